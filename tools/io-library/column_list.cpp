@@ -12,6 +12,7 @@
 #include "column_proposal.hpp"
 #include "html_text.hpp"
 #include "log_text.hpp"
+#include "shell_words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,18 +94,6 @@ bool proposes(const std::vector<ListedColumn>& columns, const char* name) {
 }
 
 }  // namespace
-
-std::string quoted_for_shell(const std::string& text) {
-  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '=' || c == ':' || c == '/' || c == '.' || c == '%' || c == '-' || c == ',' || c == '+' ||
-           c == '@';
-  });
-  if (plain) return text;
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + "'";
-}
 
 std::vector<ListedColumn> list_columns(const std::string& path, const std::string& joint) {
   return list_log(path, joint).columns;

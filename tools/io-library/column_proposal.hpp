@@ -44,7 +44,4 @@ std::string topics_text(const McapContents& contents);
 /// What a capture of a SimpleBGC board holds, as lines.
 std::string capture_text(const SbgcCaptureContents& contents);
 
-/// A word as a shell takes it.
-std::string quoted_for_shell(const std::string& text);
-
 }  // namespace thermopower::io

@@ -7,6 +7,7 @@
 
 #include "column_proposal.hpp"
 #include "log_text.hpp"
+#include "shell_words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -79,17 +80,10 @@ bool takes_value(const std::string& name) {
          name == "--rate" || name == "--horizon";
 }
 
-// A word as a shell reads it; what ends a clause of a sentence is not part of it.
+// A word of a sentence as a shell reads it; what ends a clause is not part of it.
 std::string word_at(const std::string& text, std::size_t& at) {
-  std::string word;
-  bool quoted = false;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (c == '\'') quoted = !quoted;
-    else if (!quoted && (c == ' ' || c == ')' || c == ';')) break;
-    else if (!quoted && c == ',' && (at + 1 == text.size() || text[at + 1] == ' ')) break;
-    else word += c;
-  }
+  std::string word = shell_word(text, at, " );");
+  if (!word.empty() && word.back() == ',' && text[at - 1] == ',') word.pop_back(), --at;
   return word;
 }
 

@@ -17,6 +17,8 @@
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 
+#include "../io-library/shell_words.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -85,20 +87,6 @@ nlohmann::ordered_json curves(const gap::Diagnosis& diagnosis) {
   return list;
 }
 
-// The words of a line as a shell reads it.
-std::vector<std::string> words(const std::string& line) {
-  std::vector<std::string> list;
-  bool quoted = false, within = false;
-  for (const char c : line) {
-    const bool blank = !quoted && (c == ' ' || c == '\t' || c == '\r');
-    if (c == '\'') quoted = !quoted;
-    if (!blank && !within) list.emplace_back();
-    if (!blank && c != '\'') list.back() += c;
-    within = !blank;
-  }
-  return list;
-}
-
 // How a page's recordings are read and judged.
 struct PageOptions {
   io::ReadOptions reading;
@@ -124,7 +112,7 @@ PageOptions page_options(const gap::Model& model, const std::string& mapping) {
   };
   std::string map;
   for (const std::string& line : lines(mapping)) {
-    const std::vector<std::string> given = words(line);
+    const std::vector<std::string> given = io::shell_words(line);
     if (given.empty() || given.front().compare(0, 2, "--") != 0) {
       map += line + "\n";
       continue;
