@@ -23,7 +23,8 @@ if(THERMOPOWER_DESKTOP)
   install(EXPORT thermopowerDesktopTargets NAMESPACE thermopower:: DESTINATION ${package_dir} COMPONENT headers)
   install(FILES include/thermopower/desktop.hpp include/thermopower/gap.hpp include/thermopower/io.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers)
-  install(DIRECTORY include/thermopower/gap include/thermopower/io include/thermopower/plant include/thermopower/robot include/thermopower/simulation
+  # Not robot/: its library is a part of the program alone.
+  install(DIRECTORY include/thermopower/gap include/thermopower/io include/thermopower/plant include/thermopower/simulation
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers FILES_MATCHING PATTERN "*.hpp")
 endif()
 # thermopower_install_library(<target> <component>): the library, and what find_package() tells of it.
@@ -51,6 +52,10 @@ install(FILES ${PROJECT_BINARY_DIR}/thermopowerConfig.cmake ${PROJECT_BINARY_DIR
 
 configure_file(${CMAKE_CURRENT_LIST_DIR}/thermopower.pc.in ${PROJECT_BINARY_DIR}/thermopower.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/thermopower.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig COMPONENT headers)
+
+# Where Debian's packages have them.
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/thermopower RENAME copyright COMPONENT headers)
+install(FILES CHANGELOG.md README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/thermopower COMPONENT headers)
 
 # cpack -G DEB --config <build>/CPackConfig.cmake: one package of what was built. Configure with CMAKE_SKIP_INSTALL_ALL_DEPENDENCY=ON where
 # only some targets were.
