@@ -260,9 +260,9 @@ TEST_CASE("the amended file holds what changed and nothing else, and MuJoCo load
         std::string::npos);
 }
 
-TEST_CASE("a file that is no robot is refused with what was expected") {
+TEST_CASE("a file that is not a robot is refused with what was expected") {
   CHECK_THROWS_WITH(robot::MujocoBody("x.xml", "<html></html>"),
-                    "x.xml: is no robot; expected an MJCF file (<mujoco>) or a URDF file (<robot>)");
+                    "x.xml: is not a robot; expected an MJCF file (<mujoco>) or a URDF file (<robot>)");
 }
 
 TEST_CASE("a robot in URDF has its limits and frictions") {

@@ -172,9 +172,22 @@ TEST_CASE("what is no report is refused by its name") {
   CHECK_THAT(fault(R"({"format": "thermopower-model/1"})"),
              ContainsSubstring("b.json: /format is thermopower-model/1"));
   CHECK_THAT(fault(R"({"format": "thermopower-gap-report/1"})"),
-             ContainsSubstring("b.json: /verdict is missing"));
-  CHECK_THAT(
-      fault(
-          R"({"format": "thermopower-gap-report/1", "verdict": 3, "cause": [{}], "gap": {}, "constants": {}})"),
-      ContainsSubstring("not as reports are written"));
+             ContainsSubstring("b.json: /verdict: is missing"));
+  // A value of another kind is named by its place and line; a comparison never leaves it out in silence.
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = good.text;
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return fault(text.replace(at, from.size(), to));
+  };
+  CHECK_THAT(changed("\"explained\"", "3"),
+             ContainsSubstring("b.json: /verdict: is 3; expected a verdict such as explained (line 3)"));
+  CHECK_THAT(changed("\"explained\"", "\"perhaps\""),
+             ContainsSubstring("/verdict: is \"perhaps\"; expected"));
+  CHECK_THAT(changed("\"effect\": \"winding_tempco\"", "\"effect\": 1"),
+             ContainsSubstring("/cause/0/effect: is 1; expected text"));
+  CHECK_THAT(changed("\"before\": 0.06", "\"before\": \"0.06\""),
+             ContainsSubstring("/gap/current_A/before: is \"0.06\"; expected a number or null"));
+  CHECK_THAT(changed("\"before\": 0.06", "\"after\": 0.06"),
+             ContainsSubstring("/gap/current_A/before: is missing"));
 }

@@ -123,8 +123,8 @@ endif()
 
 run(3 ${HERE}/manifest.csv --out ${HERE}/broken --workers 2)
 expect("${output}" "10 logs: 0 reports were there, 8 are new, 2 have none")
-expect("${error}" "manifest.csv:10: thermopower-gap: [^\n]*broken.csv:3: column 'motor_C': 'x' is not a number")
-expect("${error}" "manifest.csv:11: thermopower-gap: [^\n]*missing.csv: cannot be read")
+expect("${error}" "manifest.csv:10: [^\n]*broken.csv:3: column 'motor_C': 'x' is not a number")
+expect("${error}" "manifest.csv:11: [^\n]*missing.csv: cannot be read")
 
 # A log at which workers die costs itself alone: here one whose reading never ends, and whose worker is killed each time.
 find_program(mkfifo mkfifo)

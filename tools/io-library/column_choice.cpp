@@ -11,8 +11,10 @@
 #include "plain_letters.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -219,6 +221,9 @@ ColumnChoice parse_choice(const std::string& where, const std::string& text) {
   if (ending == "_deg") known += ", or how many counts a turn has, such as 4096";
   if (ending == "_dps") known += ", or counts a turn per second, such as 4096/s";
   if (ending == "power_param") known += ", or what full power is";
+  if (!known.empty())
+    known +=
+        ", each also behind a factor above 0, such as " + std::string(quantity->units.front().text) + "*0.01";
   fail(excerpt(unit) + " is not a unit of " + choice.name +
        (known.empty() ? "; a name without a unit takes none" : "; expected one of " + known));
   return choice;
@@ -283,9 +288,10 @@ std::vector<ColumnChoice> read_column_map(const std::string& path) {
   if (std::filesystem::is_directory(path, status))
     throw InputError(path + ": is a directory; expected a mapping file");
   std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw InputError(path + ": cannot be read: " + std::strerror(errno) + "; expected a mapping file");
   std::ostringstream text;
   text << file.rdbuf();
-  if (!file) throw InputError(path + ": cannot be read; expected a mapping file");
   return parse_column_map(path, text.str());
 }
 

@@ -4,7 +4,9 @@
 #include <thermopower/io/compare_reports.hpp>
 
 #include "html_text.hpp"
+#include "json_place.hpp"
 
+#include <thermopower/gap/verdict.hpp>
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/sentences.hpp>
 #include <thermopower/io/summary.hpp>
@@ -31,6 +33,72 @@ constexpr double they_differ = 2.0;
 
 constexpr const char* report_format = "thermopower-gap-report/1";
 
+// What a comparison reads of a report, with an error that names the file, the line and the place.
+class ReportShape {
+public:
+  explicit ReportShape(const NamedReport& report) : report_(report) {}
+
+  void expect(const Json& json) const {
+    const Json& verdict = at(json, "", "verdict");
+    if (!verdict.is_string() || !gap::verdict_of(verdict.get<std::string>()))
+      fail("/verdict", verdict, "a verdict such as explained");
+    const Json& causes = at(json, "", "cause");
+    if (!causes.is_array()) fail("/cause", causes, "a list");
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      const std::string here = "/cause/" + std::to_string(i);
+      text(causes[i], here, "effect");
+      for (const auto& [name, one] :
+           object(at(causes[i], here, "parameters"), here + "/parameters").items()) {
+        const std::string parameter = here + "/parameters/" + name;
+        text(one, parameter, "unit");
+        known(one, parameter, "value");
+      }
+    }
+    for (const auto& [signal, one] : object(at(json, "", "gap"), "/gap").items()) {
+      text(one, "/gap/" + signal, "unit");
+      for (const char* key : {"before", "after", "noise_floor"}) number(one, "/gap/" + signal, key);
+    }
+    for (const auto& [name, one] : object(at(json, "", "constants"), "/constants").items()) {
+      known(one, "/constants/" + name, "fitted");
+      number(one, "/constants/" + name, "configured");
+    }
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& pointer, const Json& value, const std::string& expected) const {
+    std::string shown = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    if (shown.size() > 40) shown = shown.substr(0, 40) + "...";
+    throw InputError(report_.name + ": " + pointer + ": is " + shown + "; expected " + expected + " (line " +
+                     std::to_string(line_of_pointer(report_.text, pointer)) + ")");
+  }
+  const Json& object(const Json& value, const std::string& pointer) const {
+    if (!value.is_object()) fail(pointer, value, "an object");
+    return value;
+  }
+  const Json& at(const Json& block, const std::string& pointer, const char* key) const {
+    object(block, pointer);
+    if (!block.contains(key))
+      throw InputError(report_.name + ": " + pointer + "/" + key +
+                       ": is missing; expected a report that 'diagnose --report' wrote");
+    return block.at(key);
+  }
+  void text(const Json& block, const std::string& pointer, const char* key) const {
+    const Json& value = at(block, pointer, key);
+    if (!value.is_string()) fail(pointer + "/" + key, value, "text");
+  }
+  void number(const Json& block, const std::string& pointer, const char* key) const {
+    const Json& value = at(block, pointer, key);
+    if (!value.is_number() && !value.is_null()) fail(pointer + "/" + key, value, "a number or null");
+  }
+  void known(const Json& block, const std::string& pointer, const char* key) const {
+    number(block, pointer, key);
+    const Json& interval = at(block, pointer, "ci95");
+    if (!interval.is_array() && !interval.is_null()) fail(pointer + "/ci95", interval, "two numbers or null");
+  }
+
+  const NamedReport& report_;
+};
+
 Json parsed(const NamedReport& report) {
   Json json;
   try {
@@ -46,8 +114,7 @@ Json parsed(const NamedReport& report) {
                                  : std::string("missing");
   if (format != report_format)
     throw InputError(report.name + ": /format is " + format + "; expected " + report_format);
-  for (const char* key : {"verdict", "cause", "gap", "constants"})
-    if (!json.contains(key)) throw InputError(report.name + ": /" + key + " is missing");
+  ReportShape(report).expect(json);
   return json;
 }
 
@@ -179,11 +246,7 @@ std::string compared(const NamedReport& name_a, const NamedReport& name_b, const
 
 std::string comparison(const NamedReport& a, const NamedReport& b) {
   const Json first = parsed(a), second = parsed(b);
-  try {
-    return compared(a, b, first, second);
-  } catch (const Json::exception& error) {
-    throw InputError(a.name + " and " + b.name + ": not as reports are written: " + error.what());
-  }
+  return compared(a, b, first, second);
 }
 
 }  // namespace thermopower::io

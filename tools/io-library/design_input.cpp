@@ -26,16 +26,21 @@ using gap::design::Bounds;
 using gap::design::Limits;
 using gap::design::VariedInput;
 
+constexpr const char* limits_format = "thermopower-limits/1";
+constexpr const char* report_format = "thermopower-gap-report/1";
+
 // A JSON text, and errors that name its file, field and line.
 class JsonText {
 public:
-  JsonText(const std::string& file, const std::string& text) : file_(file), text_(text) {
+  JsonText(const std::string& file, const std::string& text, const std::string& format)
+      : file_(file), text_(text) {
     try {
       root_ = Json::parse(text);
     } catch (const Json::exception& error) {
       std::string what = error.what();
       const auto at = what.find("line ");
-      throw InputError(file + ": not JSON: " + (at == std::string::npos ? what : what.substr(at)));
+      throw InputError(file + ": not JSON: " + (at == std::string::npos ? what : what.substr(at)) +
+                       "; expected an object with \"format\": \"" + format + "\"");
     }
   }
 
@@ -51,10 +56,10 @@ public:
     return text.size() > 40 ? text.substr(0, 40) + "..." : text;
   }
 
-  void expect_format(const char* format) const {
+  void expect_format(const std::string& format) const {
     if (!root_.is_object())
       throw InputError(file_ + ": expected an object with \"format\": \"" + format + "\"");
-    if (!root_.contains("format")) fail("/format", std::string("is missing; expected \"") + format + "\"");
+    if (!root_.contains("format")) fail("/format", "is missing; expected \"" + format + "\"");
     if (root_["format"] != format)
       fail("/format", "is " + shown(root_["format"]) + "; expected \"" + format + "\"");
   }
@@ -193,8 +198,8 @@ RankedExplanation explanation(const Json& entry) {
 }  // namespace
 
 Limits parse_limits(const std::string& name, const std::string& text) {
-  const JsonText file(name, text);
-  file.expect_format("thermopower-limits/1");
+  const JsonText file(name, text, limits_format);
+  file.expect_format(limits_format);
   const Json& root = file.root();
   file.only(root, "",
             {"format", "duration_s", "row_s", "vary", "hold", "start", "angle_deg", "rate_dps", "current_A",
@@ -222,8 +227,8 @@ Limits read_limits(const std::string& path) {
 
 gap::design::DiagnosedGap parse_report(const std::string& name, const std::string& text,
                                        const Catalogue& catalogue) {
-  const JsonText file(name, text);
-  file.expect_format("thermopower-gap-report/1");
+  const JsonText file(name, text, report_format);
+  file.expect_format(report_format);
   const Json& root = file.root();
   if (!root.contains("model"))
     file.fail("/model", "is missing; expected a report of this version: run diagnose --report again");

@@ -51,6 +51,10 @@ LogText json_lines_as_csv(const std::string& name, const std::string& text) {
     ++number;
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const auto fail = [&](const std::string& what) {
+      const Json whole = Json::parse(text, nullptr, false, true);
+      if (whole.is_object() && whole.contains("format") && whole["format"].is_string())
+        throw InputError(name + ": is a file of the format " + whole["format"].get<std::string>() +
+                         "; expected a recording, such as a CSV file");
       throw InputError(name + ":" + std::to_string(number) + ": " + what +
                        "; expected a JSON object in each line, such as {\"t_s\": 0.01, \"angle_deg\": 3.2}");
     };

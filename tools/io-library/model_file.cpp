@@ -8,6 +8,7 @@
 
 #include "file_source.hpp"
 #include "json_place.hpp"
+#include "nearest_name.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -68,11 +69,13 @@ public:
     if (!root.is_object())
       fail("", std::string(root.type_name()) + " at the top; expected an object with \"format\": \"" +
                    format_id + "\"");
-    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "servo", "network", "effects"});
     if (!root.contains("format")) fail("/format", std::string("is missing; expected \"") + format_id + "\"");
     if (!root["format"].is_string() || root["format"].get<std::string>() != format_id) {
-      fail("/format", "is " + shown(root["format"]) + "; expected \"" + format_id + "\"");
+      const bool is_report = root["format"] == "thermopower-gap-report/1";
+      fail("/format", "is " + shown(root["format"]) + "; expected \"" + format_id + "\"" +
+                          (is_report ? ", which 'diagnose --augmented' writes" : ""));
     }
+    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "servo", "network", "effects"});
     Model model;
     if (root.contains("name")) {
       if (!root["name"].is_string()) fail("/name", "is " + shown(root["name"]) + "; expected text");
@@ -162,7 +165,8 @@ private:
       // The parser keeps the last of two equal keys; which of them the author meant nobody knows.
       if (!level.keys.insert(name).second)
         throw InputError(file_ + ": " + pointer() +
-                         ": this key appears twice in one object; expected it once");
+                         ": this key appears twice in one object; expected it once (line " +
+                         std::to_string(line_of_pointer(text_, pointer())) + " is the first)");
       return true;
     }
     bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
@@ -173,7 +177,10 @@ private:
       std::string what = error.what();
       const auto colon = what.find(": ", what.find("column"));
       if (colon != std::string::npos) what = what.substr(colon + 2);
-      throw InputError(where + "not JSON: " + what);
+      const std::size_t first = text_.find_first_not_of(" \t\r\n");
+      const bool is_other = first == std::string::npos || text_[first] != '{';
+      throw InputError(where + "not JSON: " + what +
+                       (is_other ? "; expected a model file, as 'thermopower-gap init' writes it" : ""));
     }
 
   private:
@@ -519,10 +526,15 @@ private:
       const auto& list = own != nullptr ? own->list() : catalogue_.list();
       const auto info =
           std::find_if(list.begin(), list.end(), [&](const EffectInfo& one) { return one.id == item.key(); });
-      if (info == list.end())
+      if (info == list.end()) {
+        std::vector<std::string> ids;
+        for (const EffectInfo& one : list) ids.push_back(one.id);
+        const std::string nearest = nearest_name(item.key(), ids);
         fail(here,
-             std::string("no such effect in the catalogue; expected an id that 'thermopower-gap effects") +
-                 (own != nullptr ? " --model' lists" : "' lists"));
+             "no such effect in the catalogue; " +
+                 (nearest.empty() ? std::string("expected") : "did you mean " + nearest + "? Expected") +
+                 " an id that 'thermopower-gap effects" + (own != nullptr ? " --model' lists" : "' lists"));
+      }
       object(item.value(), here);
       std::vector<std::string> names;
       for (const auto& parameter : info->parameters) names.push_back(parameter.name);

@@ -18,7 +18,12 @@ namespace thermopower::io {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, int error) {
-  throw OutputError(path + ": cannot be written: " + std::strerror(error));
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code status;
+  const bool lacks_folder = error == ENOENT && !folder.empty() && !std::filesystem::exists(folder, status);
+  throw OutputError(path + ": cannot be written: " +
+                    (lacks_folder ? "there is no folder " + folder.string() + "; make it first"
+                                  : std::string(std::strerror(error))));
 }
 
 // `-` is standard output, as it is standard input where a file is read.

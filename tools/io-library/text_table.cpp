@@ -7,6 +7,8 @@
 
 #include <csv.h>
 
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -96,10 +98,12 @@ private:
 }  // namespace
 
 TextTable read_text_table(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
   std::error_code status;
-  if (!file || std::filesystem::is_directory(path, status))
-    throw InputError(path + ": cannot be read; expected a table (CSV)");
+  if (std::filesystem::is_directory(path, status))
+    throw InputError(path + ": is a directory; expected a table (CSV)");
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw InputError(path + ": cannot be read: " + std::strerror(errno) + "; expected a table (CSV)");
   TableParser parser(path);
   bool first = true;
   for (std::string line; std::getline(file, line); first = false) {

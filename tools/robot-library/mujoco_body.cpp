@@ -8,8 +8,10 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <regex>
@@ -32,11 +34,17 @@ using ModelPointer = std::unique_ptr<mjModel, DeleteModel>;
 using DataPointer = std::unique_ptr<mjData, DeleteData>;
 
 std::string read_whole(const std::string& path) {
+  std::error_code status;
+  if (std::filesystem::is_directory(path, status))
+    throw io::InputError(path + ": is a directory; expected a robot as MJCF or URDF");
   std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw io::InputError(path + ": cannot be read: " + std::strerror(errno) +
+                         "; expected a robot as MJCF or URDF");
   std::ostringstream text;
-  if (file) text << file.rdbuf();
-  if (!file || text.str().empty())
-    throw io::InputError(path + ": cannot be read; expected a robot as MJCF or URDF");
+  text << file.rdbuf();
+  if (text.str().empty())
+    throw io::InputError(path + ": the file is empty; expected a robot as MJCF or URDF");
   return text.str();
 }
 
@@ -110,7 +118,8 @@ struct MujocoBody::Parts {
     file = name;
     urdf = has_root(text, "robot");
     if (!urdf && !has_root(text, "mujoco"))
-      throw io::InputError(name + ": is no robot; expected an MJCF file (<mujoco>) or a URDF file (<robot>)");
+      throw io::InputError(name +
+                           ": is not a robot; expected an MJCF file (<mujoco>) or a URDF file (<robot>)");
     std::string error;
     if (urdf) {
       model = load_text(without_shapes(text), error);

@@ -71,6 +71,9 @@ Command add_check(CLI::App& program) {
             if (is_robot(*asked)) return check_robot(*asked, *robot);
             if (asked->model.empty())
               throw UsageError("--model is required, or --mjcf or --urdf for a whole robot");
+            if (!asked->mjcf.empty() || !asked->urdf.empty())
+              throw UsageError(
+                  "--model is of one actuator, and --mjcf and --urdf of a whole robot; expected one of them");
             return check(*asked);
           }};
 }

@@ -50,7 +50,8 @@ const CLI::Validator share(
 const CLI::Validator a_number(
     [](std::string& text) {
       double value = 0.0;
-      return CLI::detail::lexical_cast(text, value) ? std::string() : "'" + text + "' is not a number";
+      const bool fine = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+      return fine ? std::string() : "'" + text + "' is not a number";
     },
     "number");
 

@@ -42,7 +42,13 @@ int run_design(const DesignArguments& asked) {
     progress.stage("designing");
     gap::design::DesignOptions options;
     options.seed = asked.seed;
-    design = gap::design::design_experiment(diagnosed, limits, options, catalogue);
+    try {
+      design = gap::design::design_experiment(diagnosed, limits, options, catalogue);
+    } catch (const gap::InvalidInput& error) {
+      const std::string what = error.what(), of_limits = "limits: ";
+      if (what.compare(0, of_limits.size(), of_limits) != 0) throw io::InputError(asked.report + ": " + what);
+      throw io::InputError(asked.limits + ": " + what.substr(of_limits.size()));
+    }
     if (design.ending == gap::design::Ending::schedule) {
       outputs.put(asked.out, io::schedule_csv(design));
       if (!asked.c_array.empty()) outputs.put(asked.c_array, io::schedule_header(design, limits));

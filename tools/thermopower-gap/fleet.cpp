@@ -213,7 +213,9 @@ private:
     asked.map = path("map");
     asked.report = file_of(log, ".json").string();
     if (arguments_.pages) asked.page = file_of(log, ".html").string();
-    const std::string fault = arguments_.diagnose(asked);
+    std::string fault = arguments_.diagnose(asked);
+    const std::string program = "thermopower-gap: ";  // the place in the table is put before it instead
+    if (fault.compare(0, program.size(), program) == 0) fault.erase(0, program.size());
     std::error_code error;
     if (fault.empty() && is_done(log)) fs::remove(file_of(log, ".failed"), error);
     else put_failure(log, fault.empty() ? "its report is not there any more" : fault);

@@ -178,6 +178,36 @@ std::string joint_blocks(const Description& asked, const RobotJoint* robot) {
   return out;
 }
 
+// Where the constants of the options stand in the model.
+constexpr struct {
+  const char *place, *option;
+} places[] = {{"/supply/nominal_V", "--supply"},
+              {"/current/resistance_ohm", "--resistance"},
+              {"/current/tempco_per_K", "--tempco"},
+              {"/thermal/heat_capacity_J_per_K", "--heat-capacity"},
+              {"/thermal/conductance_W_per_K", "--conductance"},
+              {"/axis/inertia_kgm2", "--inertia"},
+              {"/axis/viscous_Nms_per_rad", "--viscous"},
+              {"/axis/torque_constant_Nm_per_A", "--torque-constant"}};
+
+// What is written must be what the reader takes: a wrong answer is told here, with the option's name.
+void expect_model(const Description& asked, const std::string& text) {
+  try {
+    io::parse_model(asked.out.empty() ? "model" : asked.out, text, gap::standard_catalogue());
+  } catch (const io::InputError& error) {
+    const std::string what = error.what();
+    for (const auto& one : places) {
+      const std::string place = std::string(one.place) + ": ";
+      const std::size_t at = what.find(place);
+      if (at == std::string::npos) continue;
+      const std::size_t begin = at + place.size();
+      throw UsageError(std::string("init: ") + one.option + ": " +
+                       what.substr(begin, what.rfind(" (line ") - begin));
+    }
+    throw;
+  }
+}
+
 int init(Description& asked) {
   io::OutputFiles outputs;
   if (!asked.out.empty()) outputs.expect(asked.out);
@@ -213,8 +243,7 @@ int init(Description& asked) {
   if (motor) text += motor_blocks(asked) + (joint ? ",\n" : "\n");
   if (joint) text += joint_blocks(asked, robot ? &*robot : nullptr) + "\n";
   text += "}\n";
-  // What is written must be what the reader takes: a wrong answer is told here, with the constant's name.
-  io::parse_model(asked.out.empty() ? "model" : asked.out, text, gap::standard_catalogue());
+  expect_model(asked, text);
   if (asked.out.empty()) {
     std::fputs(text.c_str(), stdout);
   } else {

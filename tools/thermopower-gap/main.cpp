@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,10 @@ void expect_subcommand(CLI::App& app, const std::string& given) {
   for (const CLI::App* const one : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(one->get_name());
   if (std::find(names.begin(), names.end(), given) != names.end()) return;
-  const std::string nearest = io::nearest_name(given, names);
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  if (given.empty()) throw UsageError("no subcommand is given; expected one of " + list);
+  const std::string nearest = io::nearest_name(given, names);
   throw UsageError(
       io::excerpt(given) + " is not a subcommand" +
       (nearest.empty() ? "; expected one of " : "; did you mean " + nearest + "? Expected one of ") + list);
@@ -58,6 +60,19 @@ std::string with_options(const std::vector<std::string>& options, const std::str
   return "did you mean" + text + "?";
 }
 
+// Says of an option that its value is missing, or that it is given again: CLI11's own speaks of its types.
+void expect_value_once(const CLI::Option& option, const std::string& word, const char* next, int count) {
+  const bool takes_one = option.get_expected_min() > 0;
+  if (takes_one && word.find('=') == std::string::npos &&
+      (next == nullptr || std::string(next).compare(0, 2, "--") == 0))
+    throw UsageError(word + ": no value stands behind it; expected one, as in " + word + " " +
+                     (option.get_type_name() == "TEXT" ? "FILE" : "NUMBER"));
+  if (count > 1 && option.get_expected_max() == 1 &&
+      option.get_multi_option_policy() == CLI::MultiOptionPolicy::Throw)
+    throw UsageError(word.substr(0, word.find('=')) + ": is given " + std::to_string(count) +
+                     " times; expected once");
+}
+
 // Says what was typed that no option is, before the parser says what is missing.
 void expect_options(const CLI::App& subcommand, int count, char** values) {
   std::vector<std::string> options = {"--help"};
@@ -68,11 +83,15 @@ void expect_options(const CLI::App& subcommand, int count, char** values) {
     takes_words = takes_words || one->get_positional();
     if (one->get_required()) required += (required.empty() ? "" : " ") + one->get_name() + " ...";
   }
+  std::map<std::string, int> times;
   for (int i = 2; i < count; ++i) {
     const std::string word = values[i];
     const std::string name = word.substr(0, word.find('='));
     if (name.size() > 2 && name.compare(0, 2, "--") == 0) {
-      if (std::find(options.begin(), options.end(), name) != options.end()) continue;
+      if (const CLI::Option* const option = subcommand.get_option_no_throw(name)) {
+        expect_value_once(*option, word, i + 1 < count ? values[i + 1] : nullptr, ++times[name]);
+        continue;
+      }
       const std::string nearest = io::nearest_name(name, options);
       throw UsageError("there is no option " + name + " of " + subcommand.get_name() +
                        (nearest.empty()
@@ -115,6 +134,7 @@ int run(int count, char** values) {
     for (CLI::Option* const option : command.app->get_options([](const CLI::Option*) { return true; }))
       if (option->get_expected_min() > 0) option->check(not_empty);
 
+  if (count == 1) expect_subcommand(app, {});
   if (count > 1 && values[1][0] != '-') {
     expect_subcommand(app, values[1]);
     expect_options(*app.get_subcommand(values[1]), count, values);

@@ -79,7 +79,12 @@ double days_of(const std::string& text) {
     if (text.compare(static_cast<std::size_t>(used), std::string::npos, "Z") == 0) ++used;
     if (static_cast<std::size_t>(used) != text.size()) return missing;
   }
-  if (month < 1 || month > 12 || day < 1 || day > 31 || hour > 23 || minute > 59 || !(second < 61.0))
+  const bool leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+  const int days_of_month = month == 2                                              ? (leap ? 29 : 28)
+                            : month == 4 || month == 6 || month == 9 || month == 11 ? 30
+                                                                                    : 31;
+  if (month < 1 || month > 12 || day < 1 || day > days_of_month || hour > 23 || minute > 59 ||
+      !(second < 61.0))
     return missing;
   // Howard Hinnant's count of days: years that begin in March, eras of 400 years.
   year -= month <= 2 ? 1 : 0;

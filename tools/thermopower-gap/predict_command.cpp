@@ -54,9 +54,10 @@ StartRange range_of_start(const std::string& name) {
 }
 
 std::map<std::string, double> starts_of(const std::vector<std::string>& texts, const gap::Model& model) {
-  std::vector<std::string> names{"motor_C", "angle_deg", "rate_dps"};
+  std::vector<std::string> names;
+  if (model.has_thermal()) names = {"motor_C"};
+  if (model.axis) names.insert(names.end(), {"angle_deg", "rate_dps"});
   if (model.own) {
-    names.clear();
     for (const auto& signal : model.own->equations->info()->signals) names.push_back(signal.name);
   }
   std::string expected;
@@ -70,7 +71,9 @@ std::map<std::string, double> starts_of(const std::vector<std::string>& texts, c
     const std::optional<double> value =
         equals == std::string::npos ? std::nullopt : decimal_number(text.substr(equals + 1));
     if (!known || !value)
-      throw UsageError("--start " + text + ": expected " + expected + " with a decimal number");
+      throw UsageError("--start " + text + ": " +
+                       (expected.empty() ? "this model has nothing that starts somewhere"
+                                         : "expected " + expected + " with a decimal number"));
     const StartRange range = range_of_start(name);
     if (!(*value >= range.low && *value <= range.high))
       throw UsageError("--start " + text + ": expected " + io::readable(range.low, 5) + " to " +
