@@ -125,7 +125,7 @@ int run(int count, char** values) {
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 a diagnosis was made, 1 a fault of the program itself, 2 wrong usage, 3 unreadable or invalid input, 4 too little data, or data that cannot be believed as they stand, or no experiment that decides.");
+      "Exit status: 0 done, whatever the verdict, 1 a fault of the program itself, 2 wrong usage, 3 unreadable or invalid input, 4 too little data, or data that cannot be believed as they stand, or no experiment that decides.");
   const std::vector<Command> commands = {add_diagnose(app), add_design(app),  add_predict(app),
                                          add_check(app),    add_export(app),  add_columns(app),
                                          add_fleet(app),    add_effects(app), add_init(app),
