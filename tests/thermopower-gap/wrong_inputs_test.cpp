@@ -93,6 +93,7 @@ TEST_CASE("every wrong input gets the answer that the table says, and leaves no 
     fs::remove(work / "out.csv");
     write(work / "model.json", good_model);
     write(work / "recording.csv", good_csv);
+    write(work / "robot.xml", "<mujoco model=\"arm\"><worldbody/></mujoco>");
     std::string arguments = "predict --model model.json --recording recording.csv --predictions out.csv";
     if (row.kind == "args") {
       arguments = row.input;
@@ -146,6 +147,14 @@ TEST_CASE("what the table spoils is in order before") {
   CHECK(first.find("21.5") != std::string::npos);
   REQUIRE(std::system((predict + " --start motor_C=40.25").c_str()) == 0);
   CHECK(read_text(work / "out.csv").find("40.25") != std::string::npos);
+
+  // An axis that the program wrote may be written again.
+  const std::string export_axis =
+      "cd '" + work.string() +
+      "' && '" THERMOPOWER_GAP_PROGRAM
+      "' export --model model.json --mjcf axis.xml --urdf axis.urdf 2>left_out.txt";
+  REQUIRE(std::system(export_axis.c_str()) == 0);
+  CHECK(std::system(export_axis.c_str()) == 0);
 }
 
 TEST_CASE("a covariate may be called anything that is no name of the format") {

@@ -3,6 +3,7 @@
 
 #include "nearest_name.hpp"
 #include "program.hpp"
+#include "text_file.hpp"
 
 #include <thermopower/gap.hpp>
 #include <thermopower/io.hpp>
@@ -147,8 +148,24 @@ std::filesystem::path plain_path(const std::string& path) {
   return error ? absolute.lexically_normal() : plain;
 }
 
+// With a model --mjcf and --urdf are outputs, without one a robot is read from them: mistaken, it would be written over.
+constexpr const char* on_top_of_exports = "Units: SI, radians; the control is";
+void refuse_other_robots(const char* option, const std::string& path) {
+  std::error_code error;
+  if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
+  const std::string text = read_text(path);
+  const bool is_robot = text.find("<mujoco") != std::string::npos || text.find("<robot") != std::string::npos;
+  if (is_robot && text.find(on_top_of_exports) == std::string::npos)
+    throw UsageError(
+        std::string(option) + " " + path +
+        ": holds a robot that this program did not write; with --model the axis is written there. Give " +
+        "another name, or leave --model out to diagnose that robot");
+}
+
 // Two outputs in one file, or an output over an input, would lose one of them.
 void refuse_overlaps(const Arguments& arguments) {
+  refuse_other_robots("--mjcf", arguments.mjcf);
+  refuse_other_robots("--urdf", arguments.urdf);
   std::vector<std::string> taken = arguments.recordings;
   taken.insert(taken.end(), arguments.held_out.begin(), arguments.held_out.end());
   taken.push_back(arguments.model);
