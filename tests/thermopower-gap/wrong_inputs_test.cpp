@@ -124,6 +124,58 @@ TEST_CASE("every wrong input gets the answer that the table says, and leaves no 
   }
 }
 
+TEST_CASE("wrong inputs of a whole robot name the option, the joint and what there is instead") {
+  const fs::path work = fs::temp_directory_path() / "thermopower_wrong_robots";
+  fs::remove_all(work);
+  fs::create_directories(work);
+  write(
+      work / "arm.xml",
+      "<mujoco model=\"arm\"><worldbody><body><joint name=\"shoulder\" axis=\"0 1 0\"/><geom size=\"0.1\"/>"
+      "<body pos=\"0.3 0 0\"><joint name=\"elbow\" axis=\"0 1 0\"/><geom size=\"0.1\"/></body></body></worldbody></mujoco>");
+  write(work / "log.csv",
+        "t_s,shoulder/position_rad,elbow/position_rad\n0,0,0\n0.01,0.01,0.02\n0.02,0.02,0.04\n");
+  const auto said = [&work](const std::string& arguments, int status) {
+    const std::string command = "cd '" + work.string() + "' && '" THERMOPOWER_GAP_PROGRAM "' " + arguments +
+                                " --recording log.csv >said.txt 2>&1";
+    const int result = std::system(command.c_str());
+    const std::string text = read_text(work / "said.txt");
+    CAPTURE(arguments, text);
+    if (text.find("which this program was built without") == std::string::npos)
+      CHECK(WEXITSTATUS(result) == status);
+    return text;
+  };
+  const std::string first = said("check --mjcf arm.xml --kp knee=3", 2);
+  if (first.find("which this program was built without") != std::string::npos) return;
+  CHECK(first.find("--kp: the robot has no joint 'knee'; it has shoulder, elbow") != std::string::npos);
+  const struct {
+    const char *arguments, *expected;
+    int status;
+  } rows[] = {
+      {"check --mjcf arm.xml --kp elbw=3", "did you mean elbow?", 2},
+      {"check --mjcf arm.xml --kp=-3", "--kp: '-3' is not a gain; expected a number, 0 or more", 2},
+      {"check --mjcf arm.xml --joint elbow=knee",
+       "--joint elbow=knee: the robot has no joint 'knee'; it has shoulder, elbow", 2},
+      {"check --mjcf arm.xml --joint knee=elbow", "no column of the log has 'knee' in its header", 2},
+      {"check --mjcf arm.xml --report r.json", "--report: the check of a robot's wiring is printed", 2},
+      {"check --mjcf arm.xml --column motor_C=x", "--column is of a single actuator", 2},
+      {"check --mjcf arm.xml",
+       "The log is too short for any statement: 3 rows; expected a run of at least 60", 4},
+      {"check --mjcf absent.xml", "absent.xml: cannot be read: No such file or directory", 3},
+      {"check --mjcf log.csv", "log.csv: is not a robot; expected an MJCF file (<mujoco>)", 3},
+      {"diagnose --mjcf arm.xml --without cogging", "--without is of a single actuator; leave it out", 2},
+      {"diagnose --mjcf arm.xml --horizon 2", "--horizon is of a single actuator", 2},
+      {"diagnose --mjcf arm.xml --predictions p.csv", "--predictions is of a single actuator", 2},
+      {"diagnose --mjcf arm.xml --isaac a.py --mjlab ./a.py", "named twice", 2},
+      {"diagnose --mjcf arm.xml --augmented arm.xml", "named twice", 2},
+      {"diagnose --mjcf arm.xml --html log.csv", "named twice", 2},
+  };
+  for (const auto& row : rows) {
+    const std::string text = said(row.arguments, row.status);
+    CAPTURE(row.arguments, text);
+    CHECK(text.find(row.expected) != std::string::npos);
+  }
+}
+
 TEST_CASE("what the table spoils is in order before") {
   const fs::path work = fs::temp_directory_path() / "thermopower_right_inputs";
   fs::remove_all(work);

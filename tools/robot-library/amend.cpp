@@ -16,7 +16,7 @@ struct Tag {
 
 std::string number(double value) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.4g", value);
+  std::snprintf(text, sizeof text, "%.4g", value == 0.0 ? 0.0 : value);
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "robot_files.hpp"
 #include "robot_log.hpp"
 
+#include <thermopower/io/column_list.hpp>
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/output_files.hpp>
 #include <thermopower/robot/diagnose.hpp>
@@ -18,6 +19,7 @@
 #include <thermopower/robot/table.hpp>
 #endif
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -64,8 +66,58 @@ double number_of(const std::string& option, const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || last != end || !std::isfinite(value) || value < 0.0)
-    throw UsageError(option + ": " + io::excerpt(text) + " is no gain; expected a number from 0 on");
+    throw UsageError(option + ": " + io::excerpt(text) + " is not a gain; expected a number, 0 or more");
   return value;
+}
+
+[[noreturn]] void no_such_joint(const std::string& option, const std::string& name,
+                                const std::vector<std::string>& names) {
+  const std::string nearest = io::nearest_name(name, names);
+  std::string list;
+  for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
+  throw UsageError(option + ": the robot has no joint " + io::excerpt(name) +
+                   (nearest.empty() ? "; it has " + list : "; did you mean " + nearest + "?"));
+}
+
+// A name of the log that no column has, or of a joint that the robot lacks, would rename nothing in silence.
+void expect_renames(const std::vector<std::pair<std::string, std::string>>& renamed, const robot::Robot& body,
+                    const std::vector<std::string>& recordings) {
+  if (renamed.empty()) return;
+  std::vector<std::string> joints;
+  for (const robot::Joint& joint : body.joints) joints.push_back(joint.name);
+  std::vector<std::string> headers;
+  for (const std::string& path : recordings)
+    for (const io::ListedColumn& column : io::list_columns(path)) headers.push_back(column.header);
+  for (const auto& [in_log, in_model] : renamed) {
+    const std::string option = "--joint " + in_log + "=" + in_model;
+    if (std::find(joints.begin(), joints.end(), in_model) == joints.end())
+      no_such_joint(option, in_model, joints);
+    const std::string& name = in_log;
+    if (std::none_of(headers.begin(), headers.end(),
+                     [&name](const std::string& header) { return header.find(name) != std::string::npos; }))
+      throw UsageError(option + ": no column of the log has " + io::excerpt(name) +
+                       " in its header; 'thermopower-gap columns' lists them");
+  }
+}
+
+// Options of a single actuator would be passed over in silence.
+void refuse_options_of_one(const Arguments& asked) {
+  const Arguments standard;
+  const std::pair<bool, const char*> given[] = {{!asked.predictions.empty(), "--predictions"},
+                                                {!asked.header.empty(), "--header"},
+                                                {!asked.without.empty(), "--without"},
+                                                {!asked.columns.empty(), "--column"},
+                                                {!asked.maps.empty(), "--map"},
+                                                {asked.rows_per_s != standard.rows_per_s, "--rate"},
+                                                {asked.has_ambient, "--ambient"},
+                                                {asked.has_supply, "--supply"},
+                                                {!asked.constants.empty(), "--constant"},
+                                                {asked.horizon_s != standard.horizon_s, "--horizon"},
+                                                {asked.tolerance != standard.tolerance, "--tolerance"},
+                                                {asked.summary != standard.summary, "--summary"}};
+  for (const auto& [is_given, option] : given)
+    if (is_given)
+      throw UsageError(std::string(option) + " is of a single actuator; leave it out for a whole robot");
 }
 
 void set_gains(robot::Robot& body, const char* option, const std::vector<std::string>& given,
@@ -86,9 +138,7 @@ void set_gains(robot::Robot& body, const char* option, const std::vector<std::st
       found = true;
     }
     if (found) continue;
-    const std::string nearest = io::nearest_name(name, names);
-    throw UsageError(std::string(option) + ": the robot has no joint " + io::excerpt(name) +
-                     (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+    no_such_joint(option, name, names);
   }
 }
 
@@ -118,6 +168,7 @@ Loaded load(const Arguments& arguments, const RobotArguments& asked) {
       throw UsageError("--joint " + text + ": expected LOG=MODEL, as in --joint hip_l=FL_hip_joint");
     renamed.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
+  expect_renames(renamed, out.joints, arguments.recordings);
   for (const std::string& one : arguments.recordings)
     out.logs.push_back(robot::read_robot_log(one, out.joints, renamed));
   for (const std::string& one : arguments.held_out)
@@ -125,12 +176,21 @@ Loaded load(const Arguments& arguments, const RobotArguments& asked) {
   return out;
 }
 
-// Checks before anything is read that an output, where one is named, can be written and is not the robot's own file.
-void expect(io::OutputFiles& outputs, const std::string& output, const std::string& input) {
-  if (output.empty()) return;
-  if (plain_path(output) == plain_path(input))
-    throw UsageError("'" + output + "' is named twice; an output must not be an input");
-  outputs.expect(output);
+// Checks before anything is read that the outputs can be written, and that no file is named twice.
+void expect(io::OutputFiles& outputs, const std::vector<const std::string*>& files,
+            const Arguments& arguments) {
+  std::vector<std::string> taken = arguments.recordings;
+  taken.insert(taken.end(), arguments.held_out.begin(), arguments.held_out.end());
+  taken.push_back(robot_path(arguments));
+  for (const std::string* output : files) {
+    if (output->empty()) continue;
+    for (const std::string& other : taken)
+      if (*output != "-" && plain_path(*output) == plain_path(other))
+        throw UsageError("'" + *output +
+                         "' is named twice; an output must not be an input or another output");
+    outputs.expect(*output);
+    taken.push_back(*output);
+  }
 }
 
 robot::RobotDiagnosis diagnosed(const Loaded& loaded, const Arguments& arguments,
@@ -147,12 +207,21 @@ robot::RobotDiagnosis diagnosed(const Loaded& loaded, const Arguments& arguments
 }  // namespace
 
 int check_robot(const Arguments& arguments, const RobotArguments& asked) {
+  refuse_options_of_one(arguments);
+  if (!arguments.report.empty())
+    throw UsageError("--report: the check of a robot's wiring is printed and not written; leave it out");
   robot::Wiring wiring;
   {
     Progress progress;
     const Loaded loaded = load(arguments, asked);
     progress.stage("checking");
-    wiring = robot::check_wiring(*loaded.body, loaded.joints, robot::together(loaded.logs));
+    const robot::Log log = robot::together(loaded.logs);
+    if (robot::make_series(log).rows() == 0) {
+      std::printf("The log is too short for any statement: %td rows; expected a run of at least %td.\n",
+                  log.rows(), robot::SmoothingOptions().fewest_rows);
+      return too_little_data;
+    }
+    wiring = robot::check_wiring(*loaded.body, loaded.joints, log);
   }
   for (const robot::WiringFinding& one : wiring.findings) std::printf("Wiring: %s.\n", one.text.c_str());
   if (wiring.findings.empty())
@@ -161,16 +230,13 @@ int check_robot(const Arguments& arguments, const RobotArguments& asked) {
 }
 
 int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
-  for (const std::string* other : {&arguments.predictions, &arguments.header})
-    if (!other->empty())
-      throw UsageError(
-          "--predictions and --header are of a single actuator; a robot has --report, --html and --augmented");
+  refuse_options_of_one(arguments);
   const std::string& path = robot_path(arguments);
   const std::vector<const std::string*> files{&arguments.report, &arguments.html, &arguments.augmented,
                                               &asked.isaac,      &asked.mjlab,    &asked.newton,
                                               &asked.ranges};
   io::OutputFiles outputs;
-  for (const std::string* output : files) expect(outputs, *output, path);
+  expect(outputs, files, arguments);
   robot::RobotDiagnosis diagnosis;
   {
     Progress progress;
@@ -206,7 +272,7 @@ int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
 
 int rank_impact(const Arguments& arguments, const RobotArguments& asked) {
   io::OutputFiles outputs;
-  expect(outputs, arguments.report, robot_path(arguments));
+  expect(outputs, {&arguments.report}, arguments);
   robot::RobotDiagnosis diagnosis;
   robot::Impact ranking;
   {
