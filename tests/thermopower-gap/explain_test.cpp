@@ -117,6 +117,15 @@ TEST_CASE("the answer in words says what is missing, how large it is and what it
   d.cause = {{"calibration.inertia", 0.9, {{"calibration.inertia.scale", 2.98, {2.95, 3.01}, "1"}}}};
   CHECK(io::sentences(d).front() ==
         "The inertia is not what the model says: the recording asks for 2.98 times that [2.95, 3.01].");
+  // Numbers that the data do not tell are left to the list below, unless there is no other.
+  d.cause = {
+      {"coulomb_friction", 0.9, {{"Nm", 0.012, {0.011, 0.013}, "N m"}, {"tail", -1.0, {-5.0, 5.0}, "1"}}}};
+  d.cause[0].parameters[1].told = false;
+  CHECK_THAT(io::sentences(d).front(),
+             ContainsSubstring("(0.0120 N m [0.0110, 0.0130])") && !ContainsSubstring("tail"));
+  d.cause[0].parameters[0].told = false;
+  CHECK_THAT(io::sentences(d).front(), ContainsSubstring("which these data do not tell"));
+  d.cause = {{"calibration.inertia", 0.9, {{"calibration.inertia.scale", 2.98, {2.95, 3.01}, "1"}}}};
   d.gap[1].shrunk_by = -0.03;
   CHECK_THAT(io::sentences(d)[1],
              ContainsSubstring("Correcting it removes 93 % of the current error and raises the "

@@ -122,13 +122,14 @@ std::size_t end_of_first_clause(const std::string& prose) {
 std::string parameters_in_words(const Cause& cause) {
   std::string list;
   if (plant::is_curve(cause.effect) || cause.parameters.size() > most_parameters) return list;
-  const bool alone = cause.parameters.size() == 1 && cause.parameters.front().unit != "1";
-  for (const ParameterEstimate& one : cause.parameters) {
-    if (one.value == 0.0 && one.at_bound) continue;  // it is not there
-    ParameterEstimate shown = one;
-    if (alone) shown.name.clear();
-    list += (list.empty() ? "" : ", ") + in_people_units(shown);
-  }
+  // The numbers that the data tell, where they tell any; all of them stand under `which`.
+  const bool tells = std::any_of(cause.parameters.begin(), cause.parameters.end(),
+                                 [](const ParameterEstimate& one) { return one.told; });
+  std::vector<ParameterEstimate> shown;
+  for (const ParameterEstimate& one : cause.parameters)
+    if (!(one.value == 0.0 && one.at_bound) && one.told == tells) shown.push_back(one);
+  if (shown.size() == 1 && shown.front().unit != "1") shown.front().name.clear();
+  for (const ParameterEstimate& one : shown) list += (list.empty() ? "" : ", ") + in_people_units(one);
   return list;
 }
 
