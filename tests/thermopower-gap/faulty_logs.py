@@ -174,7 +174,7 @@ def cases():
     yield case("wrong_sign", j.changed("cmd", lambda row, value: -value))
     exchanged = [one.replace("Winding temp", "amps") if one.startswith("motor_C") else one.replace("amps", "Winding temp") for one in BENCH_OPTIONS]
     yield case("swapped_columns", b, exchanged)
-    yield case("clock_shift", j.changed("cmd", lambda row, value: j.columns["cmd"][max(row - 6, 0)]))
+    yield case("clock_shift", b.changed("amps", lambda row, value: b.columns["amps"][max(row - 6, 0)]))
     yield case("lagging_output", column(j, "vel", lambda values: filtered(values, 0.1)))
     yield case("sampled_command", joint(steps=lambda row, draw: 0.02, hold=1, goes_on=True))
     noise = random.Random(6)

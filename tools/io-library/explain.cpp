@@ -140,6 +140,8 @@ constexpr ReasonNotes reasons[] = {
     {Reason::constants_leave_a_rest, "Vary one input at a time, over its whole range."},
     {Reason::cause_explains, "The experiment under 'next' confirms it."},
     {Reason::several_explain, "The experiment under 'next' tells them apart."},
+    {Reason::cause_or_constants,
+     "Measure the constants by themselves, and say in the model file how well they are known."},
     {Reason::cause_closes_a_part, "Take the cause into the model and diagnose again."},
     {Reason::several_close_a_part, "The experiment under 'next' tells them apart."},
     {Reason::closes_too_little, "Vary one input at a time, over its whole range."},

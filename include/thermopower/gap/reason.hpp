@@ -14,6 +14,7 @@ enum class Reason {
   constants_leave_a_rest,   ///< constants do best, and leave a gap
   cause_explains,           ///< the named cause brings every signal near its floor
   several_explain,          ///< several explanations do
+  cause_or_constants,       ///< the named cause does, and so do refitted constants, which it does not spare
   cause_closes_a_part,      ///< the named cause closes a material part of the gap
   several_close_a_part,     ///< several explanations do, none of them likely enough alone
   closes_too_little,        ///< the likeliest explanation closes too little of the gap
@@ -41,6 +42,9 @@ inline const char* to_string(Reason reason) {
       return "the named cause brings held-out data near the noise floor, and no other explanation is as likely";
     case Reason::several_explain:
       return "several explanations bring held-out data near the noise floor, and this recording cannot tell them apart";
+    case Reason::cause_or_constants:
+      return "the named cause brings held-out data near the noise floor, and so do refitted constants without it: this "
+             "recording cannot tell them apart";
     case Reason::cause_closes_a_part:
       return "the named cause closes a proven part of the held-out gap; a rest stays above the noise floor";
     case Reason::several_close_a_part:
@@ -74,6 +78,8 @@ inline const char* code_of(Reason reason) {
       return "cause_explains";
     case Reason::several_explain:
       return "several_explain";
+    case Reason::cause_or_constants:
+      return "cause_or_constants";
     case Reason::cause_closes_a_part:
       return "cause_closes_a_part";
     case Reason::several_close_a_part:

@@ -272,6 +272,8 @@ struct EffectInfo {
   bool strikes = false;
   /// Its shape as a curve; none: it is a cause with a name.
   std::optional<CurveShape> curve = {};
+  /// Twice the log odds against it before any data, 0 or more. By default one in twenty of the causes that are looked for is there.
+  double rarity = 6.0;
 };
 
 }  // namespace thermopower::plant

@@ -30,7 +30,7 @@ Verdict verdict_of(const std::vector<GapScore>& table, double probability, bool 
                    bool within_known = true, double together = 1.0) {
   DecisionNumbers numbers = numbers_of(table, probability);
   numbers.together = together;
-  return decide(numbers, only_constants, within_known).verdict;
+  return decide(numbers, only_constants, within_known, true).verdict;
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ TEST_CASE("no gap is said only where the table as configured shows none") {
   // Windows twice as long show a gap that the printed ones do not.
   DecisionNumbers numbers = numbers_of({row(1.1, 1.0, 1.0)}, 0.3);
   numbers.twice_horizon = 3.0;
-  CHECK(decide(numbers, false, true).verdict != Verdict::no_gap);
+  CHECK(decide(numbers, false, true, true).verdict != Verdict::no_gap);
 }
 
 TEST_CASE("constants that leave a gap explain nothing") {
@@ -52,9 +52,9 @@ TEST_CASE("constants that leave a gap explain nothing") {
   unproven.ci95.low = -0.1;
   DecisionNumbers numbers = numbers_of({unproven}, 1.0);
   numbers.twice_horizon = 6.0;
-  CHECK(decide(numbers, true, true).verdict == Verdict::unexplained);
+  CHECK(decide(numbers, true, true, true).verdict == Verdict::unexplained);
   numbers.twice_horizon = 1.2;
-  CHECK(decide(numbers, true, true).verdict == Verdict::no_gap);
+  CHECK(decide(numbers, true, true, true).verdict == Verdict::no_gap);
   CHECK(verdict_of({row(46.0, 8.0, 8.0)}, 1.0, true, false) == Verdict::unexplained);
 }
 
@@ -63,11 +63,11 @@ TEST_CASE(
     "several answers") {
   DecisionNumbers numbers = numbers_of({row(20.0, 1.0, 1.0)}, 1.0);
   numbers.common_factor = CommonFactor::of_no_constant;
-  CHECK(decide(numbers, true, false).reason == Reason::common_factor);
-  CHECK(decide(numbers, false, false).verdict == Verdict::unexplained);
+  CHECK(decide(numbers, true, false, true).reason == Reason::common_factor);
+  CHECK(decide(numbers, false, false, true).verdict == Verdict::unexplained);
   numbers.common_factor = CommonFactor::may_be_constant;
-  CHECK(decide(numbers, true, false).verdict == Verdict::ambiguous);
-  CHECK(decide(numbers, true, true).reason == Reason::constants_within_known);
+  CHECK(decide(numbers, true, false, true).verdict == Verdict::ambiguous);
+  CHECK(decide(numbers, true, true, true).reason == Reason::constants_within_known);
 }
 
 TEST_CASE("a cause near the floor explains, if it is sure") {
@@ -75,8 +75,19 @@ TEST_CASE("a cause near the floor explains, if it is sure") {
   CHECK(verdict_of({row(20.0, 15.0, 1.1)}, 0.85) == Verdict::ambiguous);
   // Refitted constants within what is known do as well, and the cause is not sure: the constants are the answer.
   DecisionNumbers numbers = numbers_of({row(20.0, 1.0, 1.0)}, 0.7);
-  CHECK(decide(numbers, false, true).reason == Reason::constants_within_known);
-  CHECK(decide(numbers, false, false).verdict == Verdict::ambiguous);
+  CHECK(decide(numbers, false, true, true).reason == Reason::constants_within_known);
+  CHECK(decide(numbers, false, false, true).verdict == Verdict::ambiguous);
+}
+
+TEST_CASE(
+    "a cause beside which constants move as far as without it is not told from them where it adds nothing") {
+  const DecisionNumbers adds_nothing = numbers_of({row(20.0, 1.2, 1.1)}, 0.99);
+  CHECK(decide(adds_nothing, false, false, false).reason == Reason::cause_or_constants);
+  CHECK(decide(adds_nothing, false, false, true).verdict == Verdict::explained);
+  // It brings the data to the floor, and constants alone do not.
+  CHECK(decide(numbers_of({row(20.0, 5.0, 1.1)}, 0.99), false, false, false).verdict == Verdict::explained);
+  // Constants leave a little more than the floor, and it hardly less.
+  CHECK(decide(numbers_of({row(20.0, 1.7, 1.4)}, 0.99), false, false, false).verdict == Verdict::unexplained);
 }
 
 TEST_CASE("a cause beside a rest is named where it closes a material part, beyond what constants do") {

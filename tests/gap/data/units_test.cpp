@@ -238,9 +238,10 @@ TEST_CASE("loggers whose clocks differ are told, but do not decide") {
   CHECK_THAT(said(test::bench_model(), r),
              ContainsSubstring("clock_shift(current_A) follows power_param by 10 s (5 rows)"));
   CHECK(decision(test::bench_model(), r).empty());
+  // In a loop the command follows the motion, and no clock is at fault.
   r = axis();
   r.set("drive_A", engine::shifted(r.column("drive_A"), 4));
-  CHECK_THAT(said(test::axis_model(), r), ContainsSubstring("clock_shift(drive_A)"));
+  CHECK_THAT(said(test::axis_model(), r), !ContainsSubstring("clock_shift"));
 }
 
 TEST_CASE("an experiment that can tell nothing decides") {

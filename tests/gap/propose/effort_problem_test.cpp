@@ -5,6 +5,7 @@
 
 #include "../../catch.hpp"
 
+#include <thermopower/gap/compare/effort_lead.hpp>
 #include <thermopower/gap/data/prepared_recording.hpp>
 #include <thermopower/gap/propose/effort_problem.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
@@ -135,6 +136,23 @@ TEST_CASE("dry friction is told with its size, whatever the inertia in the file"
   }
 }
 
+TEST_CASE("an inertia that the effort does not hold stays where a part of the effort would still show it") {
+  Motion motion;
+  motion.inertia_kgm2 = 1e-9;  // a wrist behind a torque sensor
+  motion.extra_Nm = [](double, double rate) { return rate > 0.0 ? 0.08 : -0.08; };
+  Model model = model_of(motion);
+  model.axis->inertia_kgm2 = 0.002;
+  Posed posed(model, motion);
+  const InverseScore told = posed.score({"coulomb_friction"});
+  double inertia_kgm2 = 0.0;
+  for (const InverseConstant& one : told.constants)
+    if (model.calibrated()[one.constant].id == "inertia") inertia_kgm2 = 0.002 * one.moved_by;
+  // The motion's acceleration is some tens of rad/s2, and friction and drag are some 0.2 N m.
+  CHECK(inertia_kgm2 > 1e-5);
+  CHECK(inertia_kgm2 < 1e-3);
+  CHECK(value(told, "Nm") == Approx(0.08).epsilon(0.1));
+}
+
 TEST_CASE("a friction that would drive the motion is refused") {
   Motion motion;
   motion.extra_Nm = [](double, double rate) { return rate > 0.0 ? -0.03 : 0.03; };
@@ -204,4 +222,45 @@ TEST_CASE(
   REQUIRE(many.judged);
   CHECK(free >= 16);
   CHECK(many.share < 1.1 * few.share);
+}
+
+TEST_CASE("what makes the motion far worse is not the answer, however well it needs the effort") {
+  Motion motion;
+  motion.extra_Nm = [](double, double rate) { return rate > 0.0 ? 0.08 : -0.08; };
+  Posed posed(model_of(motion), motion);
+  FitProblem fit;
+  fit.model = &posed.model;
+  fit.catalogue = &standard_catalogue();
+  EffortLead lead(posed.problem, fit);
+  REQUIRE(lead.is_told());
+  const auto chosen = [&] {
+    return lead.candidates()[lead.answer(posed.problem.told()).chosen].explanation.ids(posed.model);
+  };
+  CHECK(chosen() == std::vector<std::string>{"coulomb_friction"});
+  Eigen::VectorXd nats = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lead.candidates().size()));
+  for (std::size_t i = 0; i < lead.candidates().size(); ++i)
+    if (lead.candidates()[i].explanation.ids(posed.model) == std::vector<std::string>{"coulomb_friction"})
+      nats[static_cast<Eigen::Index>(i)] = 1e4;
+  lead.weigh_with(nats);
+  CHECK(chosen() != std::vector<std::string>{"coulomb_friction"});
+  double sum = 0.0;
+  for (const Candidate& one : lead.candidates()) sum += one.probability;
+  CHECK(sum == Approx(1.0));
+}
+
+TEST_CASE("where a dead band does what dry friction does, the friction is the likelier one") {
+  Motion motion;
+  motion.inertia_kgm2 = 1e-6;  // effort and motion have one sign, and so the two are the same
+  motion.extra_Nm = [](double, double rate) { return rate > 0.0 ? 0.08 : -0.08; };
+  Posed posed(model_of(motion), motion);
+  FitProblem fit;
+  fit.model = &posed.model;
+  fit.catalogue = &standard_catalogue();
+  EffortLead lead(posed.problem, fit);
+  const auto probability = [&](const char* id) {
+    for (const Candidate& one : lead.candidates())
+      if (one.explanation.ids(posed.model) == std::vector<std::string>{id}) return one.probability;
+    return 0.0;
+  };
+  CHECK(probability("coulomb_friction") > probability("drive_deadband"));
 }

@@ -83,14 +83,24 @@ public:
   /// The explanations, with their probabilities.
   std::vector<Candidate>& candidates() { return candidates_; }
 
-  /// The answer: the set that forward selection stops at, with the class of what predicts alike. Where that class is not likely, and a
-  /// part of the set has one that is, that part.
+  /// Weighs the explanations with what something else says against them. @param nats  by candidate
+  void weigh_with(const Eigen::VectorXd& nats) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
+      sum += candidates_[i].probability *= std::exp(-nats[static_cast<Eigen::Index>(i)]);
+    if (sum > 0.0)
+      for (Candidate& one : candidates_) one.probability /= sum;
+  }
+
+  /// The answer: the set that forward selection stops at, or what is likeliest where that is out of the running, with the class of what predicts
+  /// alike and acts in the same place. Where that class is not likely, and a part of the set has one that is, that part.
   /// @param set  of the effort
   Answer answer(const InverseScore& set) const {
     const std::vector<const CatalogueEntry*> told = sorted(set.effects);
-    std::size_t whole = 0;
+    std::size_t whole = likeliest(candidates_);
     for (std::size_t i = 0; i < candidates_.size(); ++i)
-      if (sorted(candidates_[i].explanation.effects) == told) whole = i;
+      if (sorted(candidates_[i].explanation.effects) == told && candidates_[i].probability > hardly)
+        whole = likeliest_alike(i);
     Answer found = answer_of(whole);
     if (found.probability >= verdict_limits.likely) return found;
     for (std::size_t i = 1; i < candidates_.size(); ++i) {
@@ -104,11 +114,36 @@ public:
 
 private:
   static constexpr std::size_t most = 40;     ///< explanations that are weighed
+  static constexpr double hardly = 1e-9;      ///< probability of what is out of the running
   static constexpr double alike_from = 0.95;  ///< cosine of what two explanations do to the effort
 
   static std::vector<const CatalogueEntry*> sorted(std::vector<const CatalogueEntry*> list) {
     std::sort(list.begin(), list.end());
     return list;
+  }
+
+  static bool has_curve(const Explanation& one) {
+    return std::any_of(one.effects.begin(), one.effects.end(),
+                       [](const CatalogueEntry* entry) { return entry->info.curve.has_value(); });
+  }
+
+  /// The likeliest of what predicts like a candidate, with as many causes or fewer, and no curve in place of a name.
+  std::size_t likeliest_alike(std::size_t place) const {
+    std::size_t best = place;
+    for (std::size_t i = 1; i < candidates_.size(); ++i)
+      if (candidates_[i].explanation.size() <= candidates_[place].explanation.size() &&
+          has_curve(candidates_[i].explanation) <= has_curve(candidates_[place].explanation) &&
+          likeness(signatures_[i], signatures_[place]) >= alike_from &&
+          candidates_[i].probability > candidates_[best].probability)
+        best = i;
+    return best;
+  }
+
+  /// Where the effects of a candidate act. Frictions that predict alike are one answer; a friction and a load are two.
+  static std::multiset<std::string> submodels_of(const Candidate& one) {
+    std::multiset<std::string> all;
+    for (const CatalogueEntry* entry : one.explanation.effects) all.insert(to_string(entry->info.submodel));
+    return all;
   }
 
   /// A candidate as the answer.
@@ -118,7 +153,8 @@ private:
     const Explanation& chosen = candidates_[place].explanation;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       const bool is_more = candidates_[i].explanation.includes(chosen);
-      const bool alike = likeness(signatures_[i], signatures_[place]) >= alike_from;
+      const bool alike = likeness(signatures_[i], signatures_[place]) >= alike_from &&
+                         submodels_of(candidates_[i]) == submodels_of(candidates_[place]);
       if (is_more || alike) found.probability += candidates_[i].probability;
       if (i == place || i == 0 || is_more || !(candidates_[i].probability > decision.alternative)) continue;
       found.alternatives.push_back(i);
@@ -137,9 +173,10 @@ private:
     for (Eigen::Index i = 0; i < count; ++i) {
       const InverseScore& score = scores[static_cast<std::size_t>(i)];
       for (Eigen::Index k = 0; k < blocks; ++k) density(i, k) = score.block_gain[static_cast<std::size_t>(k)];
-      const double effects = static_cast<double>(score.effects.size());
-      prior[i] = -0.5 * decision.rarity * std::max(effects - 1.0, 0.0) -
-                 static_cast<double>(score.parameters.size());
+      const Explanation& explanation = candidates_[static_cast<std::size_t>(i)].explanation;
+      // That a cause is missing is known where one is told: the first one of an explanation is no news.
+      const double news = i == 0 ? 0.0 : explanation.rarity() - decision.rarity;
+      prior[i] = -0.5 * news - static_cast<double>(score.parameters.size());
       signatures_.push_back(effort_.train_residual(score.effects) - nothing);
     }
     const Eigen::VectorXd weight = bootstrap_weights(density, prior);

@@ -96,7 +96,9 @@ struct Decision {
 /// @param numbers         of the likeliest explanation
 /// @param only_constants  whether that explanation has no effect, only moved constants
 /// @param within_known    whether the refitted constants are within what the model file says is known
-inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool within_known) {
+/// @param spares_constants  whether those beside that explanation's effects are
+inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool within_known,
+                       bool spares_constants) {
   const VerdictLimits& limit = verdict_limits;
   assert(numbers.probability >= 0.0 && numbers.probability <= 1.0 + 1e-9);
   const double passes = std::max(limit.passes, std::min(numbers.by_chance, limit.most_by_chance));
@@ -117,9 +119,14 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
         Reason::common_factor};
   if (only_constants)
     return {Verdict::explained, within_known ? Reason::constants_within_known : Reason::constants_moved};
-  // An explanation at the floor closes the gap. It need not beat constants that do, too: their moves count in its
-  // probability.
-  const bool closes = is_proven && numbers.share.of_refitted_constants <= limit.of_constants;
+  const bool beats_constants = numbers.share.of_refitted_constants <= limit.of_constants;
+  const bool closes = is_proven && beats_constants;
+  // An explanation at the floor closes the gap. It need not beat constants that do, too, where it spares them: their moves count in
+  // its probability. Where it moves them as well, the data do not tell it from them.
+  const bool adds_nothing = !beats_constants && !spares_constants;
+  if (near && adds_nothing)
+    return numbers.refitted <= limit.near_floor ? Decision{Verdict::ambiguous, Reason::cause_or_constants}
+                                                : Decision{Verdict::unexplained, Reason::closes_too_little};
   if (near && within_known && numbers.probability < limit.sure && numbers.refitted <= limit.near_floor)
     return {Verdict::explained, Reason::constants_within_known};
   if (near)

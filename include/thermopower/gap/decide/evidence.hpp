@@ -98,6 +98,23 @@ inline bool is_as_far_as_it_may(const CalibratedConstant& constant, double at) {
          (at < -nearly * farthest_down(constant) && !may_vanish(constant));
 }
 
+/// Whether what an effect adds to a constant, such as a drag by direction, makes the sum negative: it would drive the axis.
+/// @param first  place of the effect's first parameter
+inline bool drives_the_axis(const Candidate& candidate, const CatalogueEntry& entry, std::size_t first,
+                            const Model& model) {
+  if (!entry.info.where_equal) return false;
+  const std::vector<CalibratedConstant> constants = model.calibrated();
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    const CalibratedConstant& constant = constants[k];
+    if (plant::calibration_id(constant.id) != entry.info.where_equal->cause) continue;
+    const double own =
+        constant.moved(model.get(constant.block + "." + constant.fields.front()), candidate.value(k));
+    for (const int part : {entry.info.where_equal->one, entry.info.where_equal->other})
+      if (own + candidate.value(first + static_cast<std::size_t>(part)) < 0.0) return true;
+  }
+  return false;
+}
+
 /// Whether some cause ended with all its parameters on their bounds, or with one parameter where it is another effect. It
 /// then stands for a cause that the catalogue lacks. (A transition of friction does not count: at its bound friction
 /// sticks.)
@@ -108,6 +125,7 @@ inline bool is_as_far_as_it_may(const CalibratedConstant& constant, double at) {
 /// Nor is a cause that ends where the recording cannot show it. Examples are a rise of friction inside the transition
 /// through standstill or with a knee that no motion reaches, a period longer than the travel, a time constant longer than a
 /// run, and backward friction of an axis that never moved backward.
+/// Nor is a drag that, the model's own included, is negative: it would drive the axis.
 /// @param shown  by the training data; anything where it is not given
 inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const Shown& shown = {}) {
   const std::vector<bool>& at_bound = candidate.fit.at_bound;
@@ -136,6 +154,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
     }
     if (all && !entry->info.parameters.empty()) return true;
+    if (drives_the_axis(candidate, *entry, first, model)) return true;
     std::vector<double> values;
     for (std::size_t i = first; i < at; ++i) values.push_back(candidate.value(i));
     if (entry->info.slowest_s != nullptr && entry->info.slowest_s(values.data()) > shown.longest_run_s)
@@ -409,10 +428,9 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   for (std::size_t i = 0; i < signal_count; ++i)
     samples += candidates.front().train.samples[i] / weight.correlation[i];
   const auto penalty = [&](const Candidate& one) {
-    const auto causes =
-        static_cast<double>(one.explanation.effects.size() + moved_constants(one, model).size());
-    return cost_of_parameters(one, model, std::log(std::max(samples, 2.0))) + decision.rarity * causes +
-           price_of_constants(one, model);
+    return cost_of_parameters(one, model, std::log(std::max(samples, 2.0))) +
+           decision.rarity * static_cast<double>(moved_constants(one, model).size()) +
+           one.explanation.rarity() + price_of_constants(one, model);
   };
   mark_idle(candidates);
   const Candidate* best = nullptr;

@@ -132,6 +132,28 @@ public:
     attempt.reference.recalibrated = scored(attempt.recalibrated);
   }
 
+  /// What held-out motion says against candidates, nats: how much worse than the best of them they predict it from starts as
+  /// measured. A window counts once, since its errors go together. In a closed loop a heavy axis predicts motion well, and true
+  /// causes somewhat worse: that far nothing is said.
+  Eigen::VectorXd lost_in_motion(const std::vector<Candidate>& candidates) const {
+    constexpr double somewhat_worse = 1.5;  // times; cogging of a real motor under a stiff loop makes 1.3
+    const std::vector<Segment> segments = posing_.judged(held_out_);
+    Eigen::VectorXd nats(static_cast<Eigen::Index>(candidates.size()));
+    in_parallel(candidates.size(), posing_.options().threads, [&](std::size_t i) {
+      const Errors errors = errors_of(model_of(candidates[i]), segments, catalogue_);
+      double sum = 0.0, signals = 0.0;
+      for (std::size_t k = 0; k < signal_count; ++k) {
+        if (errors.of[k].empty()) continue;
+        sum += std::log(std::max(errors.rms(static_cast<Signal>(k)), 1e-300));
+        signals += 1.0;
+      }
+      nats[static_cast<Eigen::Index>(i)] =
+          static_cast<double>(segments.size()) * sum / std::max(signals, 1.0);
+    });
+    const double unheard = nats.minCoeff() + static_cast<double>(segments.size()) * std::log(somewhat_worse);
+    return (nats.array() - unheard).max(0.0);
+  }
+
 private:
   /// What a model leaves of some segments, in units of the noise floor; starts are fitted within the noise.
   SignalSums sums_of(const Model& model, const std::vector<Segment>& segments,

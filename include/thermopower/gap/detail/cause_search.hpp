@@ -22,19 +22,21 @@ public:
   /// All of them must outlive this object.
   /// @param where  in which submodels the measured rows themselves say that something is missing
   /// @param told   what the effort tells, given the motion; without effects where it tells nothing
+  /// @param effort_may_answer  whether the effort is asked where single causes do not bring the motion to the noise
   CauseSearch(const Posing& posing, const std::vector<Inputs>& train, const std::vector<Inputs>& held_out,
-              const std::vector<Location>& where, const InverseScore& told)
+              const std::vector<Location>& where, const InverseScore& told, bool effort_may_answer)
       : posing_(posing),
         as_judged_(posing, train, held_out),
         train_(train),
         told_(told),
+        effort_may_answer_(effort_may_answer),
         suspects_(suspects_among(where)) {}
 
   /// A search in long windows, and one in those of the score where that closes more.
   Attempt run() const {
     const double long_s = posing_.long_window_s(), short_s = posing_.options().horizon_s;
     Attempt attempt = search(long_s);
-    if (train_.front().axis() && short_s < long_s && attempt.is_far()) {
+    if (train_.front().axis() && !effort_may_answer_ && short_s < long_s && attempt.is_far()) {
       Attempt shorter = search(short_s);
       if (shorter.closes_more_than(attempt)) attempt = std::move(shorter);
     }
@@ -46,12 +48,19 @@ private:
     WindowSearch search(posing_, as_judged_, train_, suspects_, horizon_s);
     search.try_singles();
     search.look_at_rows();
-    search.try_sets();
-    search.try_told(told_);
-    search.try_curves();
+    if (effort_may_answer_) search.try_told(told_);
+    const bool effort_answers = effort_may_answer_ && search.has_room();
+    if (!effort_answers) {
+      search.try_sets();
+      search.try_told(told_);
+      search.try_curves();
+    }
     search.decide();
-    search.try_beside_dear_constants();
-    search.try_third_causes();
+    if (!effort_answers) {
+      search.try_late();
+      search.try_beside_dear_constants();
+      search.try_third_causes();
+    }
     return search.take();
   }
 
@@ -59,6 +68,7 @@ private:
   AsJudged as_judged_;
   const std::vector<Inputs>& train_;
   const InverseScore& told_;
+  bool effort_may_answer_;
   std::vector<plant::SubmodelName> suspects_;
 };
 

@@ -88,7 +88,6 @@ inline void check_units(const Model& model, const CheckedRecordings& checked,
       FindingList list(one.recording());
       check_thermometer(model, one, catalogue, list);
       check_current_clock(model, one, catalogue, list);
-      check_drive_clock(model, one, list);
       for (Finding& finding : list.take()) findings.push_back(std::move(finding));
     }
 }

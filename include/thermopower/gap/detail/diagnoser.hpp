@@ -63,14 +63,25 @@ public:
       if (auto told = from_effort()) return report_on(told->first, told->second);
     }
     const InverseScore proposed = effort_is_measured() ? effort_->told() : InverseScore();
-    Attempt attempt = CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where, proposed).run();
-    const bool is_denied = effort_is_measured() && leave_out_what_effort_denies(attempt.candidates);
-    const Answer answer = choose(attempt.candidates, model_);
     // In a loop that somebody closes the effort is asked, too, where the motion leaves a gap.
+    const bool effort_may_answer =
+        effort_is_measured() && effort_->loop().is_closed() && !proposed.effects.empty();
+    const auto search = [&](bool effort_answers) {
+      return CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where, proposed, effort_answers)
+          .run();
+    };
+    Attempt attempt = search(effort_may_answer);
+    const bool is_denied = effort_is_measured() && leave_out_what_effort_denies(attempt.candidates);
+    Answer answer = choose(attempt.candidates, model_);
     const bool leaves_a_gap =
         largest_noise_multiple(attempt.candidates[answer.chosen].held_out) > verdict_limits.near_floor;
-    if (effort_is_measured() && (is_denied || (leaves_a_gap && effort_->loop().kind != LoopKind::open))) {
+    if (is_denied || (effort_may_answer && leaves_a_gap)) {
       if (auto told = from_effort()) return report_on(told->first, told->second);
+      if (effort_may_answer) {
+        attempt = search(false);
+        leave_out_what_effort_denies(attempt.candidates);
+        answer = choose(attempt.candidates, model_);
+      }
     }
     return report_on(attempt, answer);
   }
@@ -125,21 +136,11 @@ private:
     Attempt attempt = posed();
     EffortLead lead(*effort_, attempt.problem);
     if (!lead.is_told()) return std::nullopt;
+    lead.weigh_with(AsJudged(posing_, train_inputs_, held_out_inputs_).lost_in_motion(lead.candidates()));
+    const Answer answer = lead.answer(effort_->told());
+    if (answer.chosen == 0) return std::nullopt;
     effort_leads_ = true;
-    Answer answer = lead.answer(effort_->told());
     take(lead, answer, attempt);
-    // A curve must not lose in the motion, either: between its knots it may be anything.
-    constexpr double loses = 2.0;
-    const Candidate &chosen = attempt.candidates[answer.chosen], &constants = attempt.candidates.front();
-    if (has_curve(chosen.explanation.effects) &&
-        largest_noise_multiple(chosen.held_out) > loses * largest_noise_multiple(constants.held_out)) {
-      if (effort_->told_by_name().effects.empty()) {
-        effort_leads_ = false;
-        return std::nullopt;
-      }
-      answer = lead.answer(effort_->told_by_name());
-      take(lead, answer, attempt);
-    }
     return std::make_pair(std::move(attempt), answer);
   }
 
@@ -285,6 +286,7 @@ private:
       Attribution(attempt.problem).survey(chosen);
     }
     Weight weight = correlation_of(chosen, attempt.problem);
+    if (effort_leads_) weight.correlation.fill(0.0);  // what the effort does not tell is in its own errors
     rank(result_, candidates, attempt.problem, weight);
     if (!effort_leads_)
       fit_to_rows(result_, chosen, attempt.problem, train_inputs_, attempt.horizon_s, weight);
@@ -313,8 +315,9 @@ private:
     if (result_.numbers.common_factor == CommonFactor::none && is_shared)
       result_.numbers.common_factor = CommonFactor::of_no_constant;
     const bool within_known = are_within(refitted);
-    Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
-                                             : decide(result_.numbers, only_constants, within_known);
+    Decision decided = ran_away(result_.gap)
+                           ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
+                           : decide(result_.numbers, only_constants, within_known, are_within(of_chosen));
     const bool is_named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
                           decided.verdict == Verdict::partial;
     if (is_named && !only_constants && !has_readings_enough(chosen))

@@ -144,13 +144,15 @@ public:
     if (has_less_noise && options_.effects_at_once > 1 && has_room())
       add_sets(search_->promising().pairs(attempt_.candidates, effects()));
     weigh_all();
-    // What fits the data it was fitted to, and fails on others, was a stand-in.
+  }
+
+  /// Those that cost much to simulate, where what fits the data it was fitted to fails on others: that was a stand-in.
+  void try_late() {
     constexpr double near = decision.near_floor;
-    if ((!costly_.empty() || !curves_.empty()) && !attempt_.best().held_out.within(near * near)) {
-      if (!costly_.empty()) add_late(costly_);
-      if (!curves_.empty()) add_late(curves_);
-      weigh_all();
-    }
+    if ((costly_.empty() && curves_.empty()) || attempt_.best().held_out.within(near * near)) return;
+    if (!costly_.empty()) add_late(costly_);
+    if (!curves_.empty()) add_late(curves_);
+    weigh_all();
   }
 
   /// Where single causes reach the noise with constants so far off that a second one could stand in their place: the likeliest of
@@ -191,6 +193,9 @@ public:
     weigh_all();
   }
 
+  /// Whether the best explanation leaves room for a further cause.
+  bool has_room() const { return !attempt_.best().train.within(decision.room_for_sets); }
+
 private:
   /// Single effects that may act together. Constants move in every explanation.
   std::vector<Explanation> effects() const {
@@ -199,9 +204,6 @@ private:
       if (!one.effects.empty()) some.push_back(one);
     return some;
   }
-
-  /// Whether the best explanation leaves room for a further cause.
-  bool has_room() const { return !attempt_.best().train.within(decision.room_for_sets); }
 
   /// @param sets  the most promising one first
   void add_sets(const std::vector<Promise>& sets) {

@@ -92,6 +92,13 @@ struct Explanation {
     return static_cast<int>(count);
   }
 
+  /// Twice the log odds against its effects before any data.
+  double rarity() const {
+    double sum = 0.0;
+    for (const CatalogueEntry* entry : effects) sum += entry->info.rarity;
+    return sum;
+  }
+
   /// Whether sides meet and part in one of its effects (EffectInfo::strikes).
   bool strikes() const {
     return std::any_of(effects.begin(), effects.end(),

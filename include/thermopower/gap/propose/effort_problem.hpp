@@ -88,6 +88,7 @@ public:
     refusal_ = InverseRefusal::none;
     find_blocks();
     constants_ = constants_of(model, catalogue);
+    bound_inertia(model, *train_, constants_);
     nothing_ = score({});
   }
 
@@ -136,6 +137,7 @@ public:
     point.factors = std::move(factors);
     bool unread = false;
     for (const plant::AddedEffect<double>& one : effects) {
+      if (makes_a_spring(*one.entry)) return 1.0;  // what the part behind it needs is not in the motion
       const bool acts = why_not(*one.entry) == InverseRefusal::none;
       if (acts) point.effects.push_back(one);
       unread = unread || !acts;
@@ -183,7 +185,7 @@ public:
         list.insert(list.end(), tried.begin(), tried.end());
         if (!goes_on) break;
       }
-      (with_curves ? told_ : told_by_name_) = now;
+      told_ = now;
     }
     std::stable_sort(list.begin(), list.end(), [](const InverseProposal& a, const InverseProposal& b) {
       return a.is_told != b.is_told ? a.is_told : a.weighed < b.weighed;
@@ -194,13 +196,8 @@ public:
   /// The set that forward selection stops at; that of nothing() where it tells none.
   const InverseScore& told() {
     if (!told_) proposals();
-    if (!told_) told_ = told_by_name_ = nothing_;
+    if (!told_) told_ = nothing_;
     return *told_;
-  }
-  /// The same without curves.
-  const InverseScore& told_by_name() {
-    told();
-    return *told_by_name_;
   }
 
   /// Whether the effort, which tells of other causes, has no use for this one: alone it does not lower held-out effort materially, nor
@@ -525,7 +522,7 @@ private:
   double samples_as_one_ = 1.0;
   double least_share_ = 1.0;
   InverseScore nothing_;
-  std::optional<InverseScore> told_, told_by_name_;
+  std::optional<InverseScore> told_;
   std::map<std::vector<const plant::CatalogueEntry*>, Scored> scores_;
 };
 

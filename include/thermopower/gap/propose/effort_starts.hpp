@@ -98,6 +98,22 @@ inline std::vector<BoundedCoordinate> constants_of(const Model& model, const Cat
   return list;
 }
 
+/// Lets an inertia fall no further than to what a 500th of the effort needs. Less is not seen, and next to none moves at once.
+inline void bound_inertia(const Model& model, const EffortResidual& data,
+                          std::vector<BoundedCoordinate>& constants) {
+  constexpr double seen = 0.002;  // of the effort's RMS
+  EffortPoint point;
+  const std::vector<CalibratedConstant> all = model.calibrated();
+  for (const CalibratedConstant& one : all) point.factors.push_back(one.unmoved());
+  for (BoundedCoordinate& one : constants) {
+    if (all[one.at.constant].id != "inertia") continue;
+    const Eigen::MatrixXd by = data.evaluate(point, {one.at}).jacobian;
+    const double needs =
+        std::sqrt(by.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, by.rows())));
+    if (needs > 0.0) one.lower = std::clamp(seen * data.compared().effort_rms / needs, one.lower, 1.0);
+  }
+}
+
 /// Where fits of an effect begin: the products of its parameters' starts. Cycles in a turn come from the residuals, delays
 /// from the rows.
 /// @param left  residuals of effort without the effect, at the compared rows

@@ -4,7 +4,6 @@
 
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/prepared_recording.hpp>
-#include <thermopower/gap/units/motion_evidence.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 
 #include <algorithm>
@@ -21,11 +20,8 @@ namespace thermopower::gap::engine {
 /// Held by tests/gap/data/units_test.cpp.
 struct ClockShiftThresholds {
   Eigen::Index furthest_current = 12;  ///< rows that a current is looked for
-  Eigen::Index furthest_drive = 8;     ///< rows that a motion is looked for before its command
   double least_rows = 30.0;            ///< that compare two columns
   double current_left = 0.6;           ///< of the current's variance that the right shift leaves
-  double follows = 0.02;               ///< of the effort's variance that a command on time may leave
-  double drive_left = 0.3;             ///< of the effort's variance that the right shift leaves
 };
 
 /// Rows of a column moved to later rows by `shift` (to earlier ones where negative), ends repeated.
@@ -71,34 +67,6 @@ inline void check_current_clock(const Model& model, const PreparedRecording& pre
                short_number(static_cast<double>(std::abs(at)) * prepared.interval_s()) + " s (" +
                std::to_string(std::abs(at)) + (std::abs(at) == 1 ? " row)" : " rows)"),
            "log both with one clock");
-}
-
-/// A motion before its command is a clock's fault. One that comes after may be the drive's own delay.
-inline void check_drive_clock(const Model& model, const PreparedRecording& prepared, FindingList& list) {
-  constexpr ClockShiftThresholds limit;
-  const Inputs& inputs = prepared.inputs();
-  if (!inputs.axis() || inputs.closed_loop) return;
-  const bool voltage = model.axis->voltage_driven(), by_rate = inputs.judged(Signal::rate_dps);
-  const MotionEvidence motion(inputs, voltage);
-  // Short bells tell the time best, longer ones a slow sensor's.
-  for (const std::size_t intervals : {std::size_t{8}, std::size_t{32}}) {
-    const auto left_at = [&](Eigen::Index earlier) {
-      const double partial = motion.effort(by_rate, earlier, intervals).inertia.partial;
-      return 1.0 - partial * partial;
-    };
-    const double now = left_at(0);
-    if (now < limit.follows) return;
-    double best = now;
-    Eigen::Index at = 0;
-    for (Eigen::Index k = 1; k <= limit.furthest_drive; ++k)
-      if (const double left = left_at(k); left < best) best = left, at = k;
-    if (at == 0 || !(best < limit.drive_left * now)) continue;
-    list.add(FindingKind::clock_shift, Severity::warning, voltage ? "voltage_V" : "drive_A",
-             "is stamped " + short_number(static_cast<double>(at) * prepared.interval_s()) +
-                 " s later than the motion it causes",
-             "log both with one clock");
-    return;
-  }
 }
 
 }  // namespace thermopower::gap::engine

@@ -32,6 +32,7 @@ struct CoulombFriction {
                       {Need::axis_model},
                       "slow reversals at small torque"};
     one.in_a_joint = in_a_joint;
+    one.rarity = 2.0;  // hardly any joint is without it
     return one;
   }
 

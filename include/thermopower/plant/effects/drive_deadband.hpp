@@ -20,16 +20,19 @@ struct DriveDeadband {
 
   /// Its description, parameters and needs.
   static EffectInfo info() {
-    return {"drive_deadband",
-            Submodel::mechanical_drive,
-            "drive = sign(u) max(0, |u| - A)",
-            "Small commands do nothing.",
-            {parameter(band_A, "A")
-                 .unit("A")
-                 .within(0.0, 1e3)
-                 .starts_as_shares_of(Input::drive_A, {0.02, 0.1, 0.3})},
-            {Need::axis_model},
-            "small commands in both directions"};
+    EffectInfo info = {"drive_deadband",
+                       Submodel::mechanical_drive,
+                       "drive = sign(u) max(0, |u| - A)",
+                       "Small commands do nothing.",
+                       {parameter(band_A, "A")
+                            .unit("A")
+                            .within(0.0, 1e3)
+                            .starts_as_shares_of(Input::drive_A, {0.02, 0.1, 0.3})},
+                       {Need::axis_model},
+                       "small commands in both directions"};
+    // Hardly any drive swallows a tenth of its range, and every joint has dry friction, which looks alike in motion one way.
+    info.rarity = 12.0;
+    return info;
   }
 
   /// Takes a fixed amount off the command.
