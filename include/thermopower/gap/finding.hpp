@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -195,7 +196,10 @@ struct Finding {
   /// Number of rows in `rows`.
   Eigen::Index row_count() const {
     Eigen::Index count = 0;
-    for (const RowRange& range : rows) count += range.end - range.begin;
+    for (const RowRange& range : rows) {
+      assert(range.begin <= range.end);
+      count += range.end - range.begin;
+    }
     return count;
   }
 };

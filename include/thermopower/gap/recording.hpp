@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -101,6 +102,7 @@ struct Recording {
 
   /// The rows [begin, end) as a recording of their own; the runs are cut accordingly.
   Recording slice(Eigen::Index begin, Eigen::Index end) const {
+    assert(begin >= 0 && begin <= end && end <= rows());
     Recording part;
     part.name = name;
     part.first_row = first_row + begin;

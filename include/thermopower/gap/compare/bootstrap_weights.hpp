@@ -30,6 +30,7 @@ inline Eigen::VectorXd bootstrap_weights(const Eigen::MatrixXd& density, const E
     total = (total.array() - total.maxCoeff()).exp();
     sum += total / total.sum();
   }
+  assert(!(std::abs(sum.sum() / draws - 1.0) > 1e-9));  // each draw's weights sum to 1
   return sum / draws;
 }
 

@@ -45,6 +45,7 @@ inline double least_room_beside(const Candidate& part, const Model& model) {
 /// others' equations.
 inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen,
                                 const Model& model) {
+  assert(chosen < candidates.size());
   for (bool smaller = true; smaller;) {
     smaller = false;
     std::size_t part = 0;
@@ -69,6 +70,7 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
 
 /// The likeliest candidate.
 inline std::size_t likeliest(const std::vector<Candidate>& candidates) {
+  assert(!candidates.empty());
   std::size_t chosen = 0;
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (candidates[i].probability > candidates[chosen].probability) chosen = i;
@@ -135,6 +137,7 @@ inline Answer choose(const std::vector<Candidate>& candidates, const Model& mode
     choice.alternatives.push_back(i);
     choice.together += one.probability;
   }
+  assert(!(choice.together < choice.probability) && choice.alternatives.size() < candidates.size());
   return choice;
 }
 

@@ -6,6 +6,7 @@
 #include <thermopower/gap/fit/candidate.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -33,6 +34,7 @@ inline Candidate fewest_constants(const FitProblem& problem, const Candidate& al
   constexpr double as_well =
       1.05;  // of the root mean square of each signal, or of the noise where that is more
   const std::size_t count = problem.model->calibrated().size();
+  assert(all.fit.point.size() >= static_cast<Eigen::Index>(count));
   const auto is_as_good = [&](const Candidate& one) {
     for (std::size_t i = 0; i < signal_count; ++i)
       if (one.train.mean(i) > as_well * as_well * std::max(all.train.mean(i), 1.0)) return false;
@@ -52,6 +54,7 @@ inline Candidate fewest_constants(const FitProblem& problem, const Candidate& al
       Candidate one = with_only(problem, moving);
       if (!(one.list[static_cast<std::size_t>(i)].upper > one.list[static_cast<std::size_t>(i)].lower))
         continue;
+      assert(one.list.size() == count);
       Fitter fitter(problem, one.explanation, one.list);
       Eigen::VectorXd from = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
       one.fit = fitter.minimise(from, options);

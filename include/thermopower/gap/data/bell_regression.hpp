@@ -10,6 +10,7 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -39,6 +40,7 @@ public:
   /// Adds a row; one that holds what is no number is left out.
   void add(const Eigen::VectorXd& terms, double response) {
     if (!terms.allFinite() || !std::isfinite(response)) return;
+    assert(terms_.empty() || terms.size() == terms_.front().size());
     terms_.push_back(terms);
     responses_.push_back(response);
   }
@@ -80,6 +82,7 @@ public:
   /// @param directed  how many of the first terms have that sign; at most 3
   /// @param sign      1 or -1; 0: their coefficients are 0
   double least_square(Eigen::Index directed, double sign) const {
+    assert(!terms_.empty() && directed >= 0 && directed <= terms_.front().size());
     const Eigen::Index count = terms_.front().size(), rows = static_cast<Eigen::Index>(terms_.size());
     Eigen::MatrixXd all(rows, count + 1);
     for (Eigen::Index i = 0; i < rows; ++i)
@@ -115,6 +118,7 @@ public:
   /// of a command is one, however long the recording.
   /// @param first  terms that are left out
   double events(Eigen::Index first) const {
+    assert(!terms_.empty() && first >= 0 && first <= terms_.front().size());
     const Eigen::Index rows = static_cast<Eigen::Index>(terms_.size()), count = terms_.front().size() - first;
     Eigen::MatrixXd others(rows, count);
     for (Eigen::Index i = 0; i < rows; ++i) others.row(i) = terms_[static_cast<std::size_t>(i)].tail(count);
@@ -170,6 +174,7 @@ public:
     for (const std::vector<Eigen::Index>& rows : runs_)
       for (std::size_t from = 0; from + intervals < rows.size(); from += step) {
         const double start_s = t_s_[rows[from]], length_s = t_s_[rows[from + intervals]] - start_s;
+        assert(length_s > 0.0);
         for (std::size_t i = 0; i < intervals; ++i) {
           const Eigen::Index row = rows[from + i], next = rows[from + i + 1];
           const double at = (0.5 * (t_s_[row] + t_s_[next]) - start_s) / length_s;

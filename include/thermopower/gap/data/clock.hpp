@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -107,6 +108,7 @@ public:
   /// Adds a run's readings. @param recorded, clock  instants of the run's rows
   void add(const Eigen::VectorXd& values, const RunSpan& run, const Eigen::VectorXd& recorded,
            const Eigen::VectorXd& clock) {
+    assert(recorded.size() >= run.size() && clock.size() >= run.size());
     std::vector<std::array<double, 2>> both;
     std::vector<double> sizes;
     for (Eigen::Index i = 2; i + 2 < run.size(); ++i) {

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -226,6 +227,7 @@ inline Eigen::VectorXd steps_of(const Eigen::VectorXd& command, const std::vecto
 /// @param steps  of the command, as steps_of() has them
 inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const Eigen::VectorXd& steps,
                                        const std::vector<RunSpan>& runs) {
+  assert(steps.size() == command.size());
   const double of_a_step = 1.0 / std::sqrt(12.0);  // a uniform distribution's
   // Of white noise: that of a mean of four or more, which nobody logged, and two fifths to a half of either end's.
   constexpr double of_noise = 0.7;

@@ -5,6 +5,7 @@
 #include <thermopower/gap/finding.hpp>
 #include <thermopower/gap/recording.hpp>
 
+#include <cassert>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -61,6 +62,7 @@ public:
                 FindingAction action, const std::string& words, const std::string& mend = {}) {
     std::vector<RowRange> rows = ranges_of(mask);
     if (rows.empty()) return;
+    assert(rows.back().end <= recording_.rows());
     Eigen::Index count = 0;
     for (const RowRange& range : rows) count += range.end - range.begin;
     const Eigen::Index first = rows.front().begin;

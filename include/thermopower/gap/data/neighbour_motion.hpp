@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -51,6 +52,7 @@ struct OrderedSamples {
   /// How far a sample lies from the polynomial through `beside` neighbours on either side, which there must be.
   template <std::size_t beside>
   double off_neighbours(std::size_t i) const {
+    assert(i >= beside && i + beside < size());
     std::array<double, 2 * beside> where{}, what{};
     for (std::size_t k = 0; k < beside; ++k) {
       where[k] = at[i - k - 1] - at[i];
@@ -93,6 +95,8 @@ struct NeighbourMotion {
 inline NeighbourMotion neighbour_motion(const OrderedSamples& samples, std::size_t i, std::size_t beside,
                                         std::size_t degree) {
   constexpr std::size_t most = 10, most_coefficients = 8;
+  assert(i >= beside && i + beside < samples.size() && 2 * beside <= most);
+  assert(degree < most_coefficients && degree + 1 < 2 * beside);
   std::size_t count = 0;
   std::array<double, most> left{};
   // Each power, made orthogonal to those before, over the neighbours; the last of each is its value at the sample.

@@ -93,6 +93,7 @@ inline double unnoticed_s(const Model& model) {
 /// run's label.
 /// @param goes_on  whether what a cut separates went on meanwhile; else each piece begins at rest
 inline std::vector<RunSpan> cut_at(const std::vector<RunSpan>& runs, const RowMask& starts, bool goes_on) {
+  assert(runs.empty() || runs.back().end <= static_cast<Eigen::Index>(starts.size()));
   std::vector<RunSpan> result;
   for (const RunSpan& run : runs) {
     RunSpan piece = run;
@@ -323,6 +324,7 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
                                    const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
                                    RowMask& unknown, double stands_s = 0.0, const RowMask& untold = {}) {
   constexpr SegmentThresholds limit;
+  assert(values.size() == t_s.size() && static_cast<Eigen::Index>(unknown.size()) == values.size());
   Eigen::VectorXd filled = values;
   const CommandRange range(values);
   const double noise = white_scale(values, runs) + quantum_of(values);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -24,6 +25,7 @@ struct Jackknifed {
 /// @param samples      in total
 /// @param correlation  samples that count as one
 inline std::size_t blocks_to_merge(double samples, double correlation) {
+  assert(!(correlation <= 0.0));
   constexpr std::size_t coarsest = 4;  // leaves six blocks
   std::size_t merge = 1;
   while (merge < coarsest &&
@@ -38,6 +40,7 @@ inline std::size_t blocks_to_merge(double samples, double correlation) {
 template <class Statistic>
 Jackknifed block_jackknife(const SignalSums& a, const SignalSums& b, std::size_t merge,
                            Statistic&& statistic) {
+  assert(merge > 0 && SignalSums::block_count % merge == 0);
   Jackknifed result;
   result.value = statistic(a, b);
   std::vector<double> left_out;
@@ -74,6 +77,7 @@ public:
            const std::array<double, signal_count>& correlation) {
     constexpr double least = 1e-6,  // mean square in units of the noise: below, nothing is told any more
         above_the_noise = 1.5;      // the same
+    assert(merge > 0 && SignalSums::block_count % merge == 0);
     std::vector<double> blocks;
     for (std::size_t first = 0; first < SignalSums::block_count; first += merge) {
       double sum = 0.0;
@@ -87,6 +91,7 @@ public:
         }
         if (!(samples > 0.0)) continue;
         any = true;
+        assert(!(correlation[i] <= 0.0));
         const double counted = samples / correlation[i];
         const double better =
             counted * std::log(std::max(of_a / samples, least) / std::max(of_b / samples, least));

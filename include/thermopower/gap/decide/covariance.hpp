@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -50,6 +51,8 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   constexpr int fewest_blocks = 12;  // below, the blocks themselves say little
   const FitResult& fit = candidate.fit;
   if (fit.information.size() == 0) return {};
+  assert(fit.information.rows() == static_cast<Eigen::Index>(candidate.list.size()) &&
+         fit.information.cols() == fit.information.rows());
   // Each coordinate is in the unit in which the data resolve it. Otherwise a direction that only the prior knows would be
   // taken for rounding beside a parameter that is known to a millionth of its unit.
   Eigen::VectorXd unit = fit.information.diagonal();
@@ -59,6 +62,7 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   for (Eigen::Index k = 0; k < unit.size(); ++k)
     inverse.col(k) = unit[k] * scaled.solve(Eigen::VectorXd::Unit(unit.size(), k)).cwiseProduct(unit);
   // H^-1 of the whole is that of the data's curvature and of the priors', both between the same inverses.
+  assert(fit.priors.size() <= unit.size() && (fit.pulls.cols() == 0 || fit.pulls.rows() == unit.size()));
   Eigen::MatrixXd by_priors = Eigen::MatrixXd::Zero(unit.size(), unit.size());
   for (Eigen::Index k = 0; k < fit.priors.size(); ++k)
     if (fit.priors[k] > 0.0) by_priors += fit.priors[k] * inverse.col(k) * inverse.col(k).transpose();
@@ -94,7 +98,9 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
 /// The 95 % interval of a coordinate, in its own numbers and within its range. It is the whole range if moving the
 /// coordinate so far changes nothing, such as a friction's transition that no sample fell into.
 inline Interval interval_of(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
+  assert(place < candidate.list.size());
   const Coordinate& one = candidate.list[place];
+  assert(one.lower <= one.upper);
   const double range = one.upper - one.lower;
   const auto at = static_cast<Eigen::Index>(place);
   const bool says_nothing =

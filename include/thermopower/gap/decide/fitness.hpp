@@ -7,6 +7,7 @@
 #include <thermopower/gap/fit/candidate.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -25,6 +26,7 @@ inline double fitness(const Candidate& candidate) {
 
 /// The candidate with the least deviance, whatever its size.
 inline const Candidate& fittest(const std::vector<Candidate>& candidates) {
+  assert(!candidates.empty());
   const Candidate* least = &candidates.front();
   for (const Candidate& one : candidates)
     if (fitness(one) < fitness(*least)) least = &one;
@@ -49,6 +51,7 @@ inline std::vector<std::size_t> by_fitness(const std::vector<Candidate>& candida
 /// Of the candidates that fit nearly as well as the best, those whose constants moved least. Constants that ran far off
 /// together in place of the missing effect, and any effect beside them, fit a little better than it.
 inline std::vector<std::size_t> modest(const std::vector<Candidate>& candidates, const Model& model) {
+  assert(!candidates.empty());
   constexpr double nearly = 0.02;  // of what the best gains
   constexpr std::size_t some = 4;
   double best = fitness(candidates.front()), worst = best;

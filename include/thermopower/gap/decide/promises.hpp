@@ -11,6 +11,7 @@
 #include <thermopower/gap/fit/segment_choice.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <set>
 #include <string>
@@ -96,6 +97,7 @@ private:
   static std::vector<Promise> all_with(const std::vector<Candidate>& candidates, std::size_t near,
                                        const std::vector<Explanation>& singles) {
     std::vector<Promise> promises;
+    assert(near < candidates.size());
     const Explanation& part = candidates[near].explanation;
     for (const Explanation& single : singles)
       if (!part.includes(single)) promises.push_back({{}, near, part.with(single)});

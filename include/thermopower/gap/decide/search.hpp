@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -84,6 +85,7 @@ public:
     options.iterations = 15;
     std::vector<std::size_t> order = by_fitness(candidates, 0);
     order.resize(std::min(looked_at, order.size()));
+    assert(!order.empty());
     in_parallel(order.size(), threads_,
                 [&](std::size_t i) { fine_.refine(candidates[order[i]], decision.second_takes, options); });
     return candidates[order.front()].explanation.refined;
@@ -232,6 +234,7 @@ private:
   /// @param hopeless  cost of a first fit from which on a candidate is taken there as it stands
   void take_along(std::vector<Candidate>& candidates, std::size_t first,
                   double hopeless = FitOptions{}.hopeless) const {
+    assert(first <= candidates.size());
     FitOptions look;
     look.iterations = 1;
     in_parallel(candidates.size() - first, threads_, [&](std::size_t i) {
@@ -303,6 +306,8 @@ private:
   void add_all_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
                       const Attribution& coarse) const {
     if (sets.empty()) return;
+    assert(std::all_of(sets.begin(), sets.end(),
+                       [&](const Promise& one) { return one.near < candidates.size(); }));
     std::vector<Candidate> found(sets.size());
     FitOptions options = quick();
     options.iterations = 12;

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -89,6 +90,7 @@ public:
 
 private:
   static std::size_t count_of(const std::vector<std::size_t>& label) {
+    assert(!label.empty());
     return 1 + *std::max_element(label.begin(), label.end());
   }
 
@@ -199,6 +201,7 @@ private:
     for (std::size_t k = 0; k < result_.classes.size(); ++k) {
       const std::size_t member =
           static_cast<std::size_t>(std::find(label.begin(), label.end(), k) - label.begin());
+      assert(member < explanations_.size());
       const Possible& one = explanations_[member];
       std::vector<Motion> drawn;
       Random random(options_.seed + 17u);
@@ -207,6 +210,8 @@ private:
       for (const Watched& watched : predictor.watched()) {
         const auto at = static_cast<std::size_t>(watched.signal);
         if (middle[at].size() == 0) continue;
+        assert(std::all_of(drawn.begin(), drawn.end(),
+                           [&](const Motion& each) { return each[at].size() == middle[at].size(); }));
         PredictedSignal signal{watched.signal, middle[at], middle[at], middle[at]};
         for (Eigen::Index row = 0; row < middle[at].size(); ++row) {
           std::vector<double> values;

@@ -6,6 +6,7 @@
 #include <thermopower/gap/design/schedule.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -44,6 +45,7 @@ public:
 
   /// The same experiment with one thing changed: a piece's shape, level, size, period or length, or the length of the whole.
   Experiment changed(Experiment experiment, Random& random) const {
+    assert(experiment.courses.size() == limits_.vary.size());
     const std::size_t which = random.index(experiment.courses.size());
     Course& course = experiment.courses[which];
     const VariedInput& input = limits_.vary[which];
@@ -52,6 +54,7 @@ public:
       course.once = std::clamp(course.once + random.uniform(-0.5, 0.5), least(input), most(input));
       return experiment;
     }
+    assert(!course.pieces.empty());
     Piece& one = course.pieces[random.index(course.pieces.size())];
     switch (random.index(7)) {
       case 0:
@@ -90,6 +93,7 @@ private:
   static double most(const VariedInput& input) { return input.to > input.at_rest() ? 1.0 : 0.0; }
 
   double within(double period_s) const {
+    assert(8.0 * limits_.row_s <= 2.0 * limits_.duration_s);
     return std::clamp(period_s, 8.0 * limits_.row_s, 2.0 * limits_.duration_s);
   }
 
@@ -115,6 +119,7 @@ private:
     const double length_s = experiment.duration_s();
     if (length_s < limits_.shortest_s())
       for (Course& course : experiment.courses) stretch(course, limits_.shortest_s() / length_s);
+    assert(experiment.duration_s() <= limits_.duration_s * (1.0 + 1e-9));
   }
 
   static void stretch(Course& course, double by) {

@@ -6,6 +6,7 @@
 #include <thermopower/gap/design/prediction.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -38,6 +39,7 @@ inline LimitUse use_of(const Motion& motion, const Limits& limits) {
     const Eigen::VectorXd& values = motion[static_cast<std::size_t>(signal)];
     const Bounds& range = *named.second;
     if (values.size() == 0 || !range.any()) continue;
+    assert(range.low <= range.high);
     double share = 0.0;
     const double first = std::clamp(signal == Signal::current_A ? 0.0 : values[0], range.low, range.high);
     for (const double value : values) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -28,7 +29,10 @@ struct VariedInput {
   bool once = false;
 
   /// The value at which nothing happens: 0 where the range holds it, else the end that is nearer to 0.
-  double at_rest() const { return std::clamp(0.0, from, to); }
+  double at_rest() const {
+    assert(from <= to);
+    return std::clamp(0.0, from, to);
+  }
 };
 
 /// A range that a quantity must not leave.

@@ -5,6 +5,7 @@
 #include <thermopower/gap/design/limits.hpp>
 #include <thermopower/gap/design/remaining.hpp>
 
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -86,6 +87,7 @@ inline std::vector<RaisedLimit> raised_limits(const Limits& limits) {
       (wider.limits.*bounds).high = wider.to;
       if (std::isfinite(old.low)) (wider.limits.*bounds).low = from - factor * (from - old.low);
       if (!std::isfinite(wider.to)) wider.to = (wider.limits.*bounds).low;
+      assert(!((wider.limits.*bounds).low > (wider.limits.*bounds).high));
       all.push_back(wider);
     };
     raise("angle_deg", &Limits::angle_deg, Limits::value_or(limits.start, "angle_deg", 0.0));

@@ -12,6 +12,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -91,6 +92,7 @@ public:
   ParameterPoint fit() const { return point(at_); }
   /// The fit, one standard deviation away in one direction. @param direction  0 to directions() - 1
   ParameterPoint moved(int direction, double by = 1.0) const {
+    assert(direction >= 0 && direction < directions());
     return point(at_ + by * axes_.col(direction));
   }
   /// Parameters as likely as the recordings make them.
@@ -110,6 +112,7 @@ public:
 
 private:
   Eigen::VectorXd within(Eigen::VectorXd at) const {
+    assert(at.size() == static_cast<Eigen::Index>(coordinates_.size()) && at_.size() == at.size());
     for (Eigen::Index i = 0; i < at.size(); ++i) {
       const engine::Coordinate& one = coordinates_[static_cast<std::size_t>(i)];
       if (!one.still && one.upper > one.lower)

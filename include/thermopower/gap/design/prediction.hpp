@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -60,6 +61,7 @@ public:
     Recording log = schedule;
     const auto begin = [&](const char* column, double value) {
       if (log.find(column) != nullptr) return;
+      assert(log.rows() > 0);
       Eigen::VectorXd values = Eigen::VectorXd::Constant(log.rows(), missing);
       values[0] = value;
       log.set(column, std::move(values));
@@ -87,6 +89,7 @@ public:
     Recording log = schedule;
     for (int i = 0; i < plant::actuator_signal_count; ++i) {
       const auto& values = motion[static_cast<std::size_t>(i)];
+      assert(values.size() == 0 || values.size() == schedule.rows());
       if (values.size() > 0) log.set(to_string(static_cast<Signal>(i)), values);
     }
     return log;
@@ -125,6 +128,7 @@ private:
     Motion motion;
     Readings readings;
     for (const Segment& segment : segments) {
+      assert(segment.begin >= 0 && segment.end <= inputs.rows());
       rollout->roll(segment, Start::Zero(plant.start_size(segment)), readings);
       rows_simulated_ += static_cast<double>(segment.end - segment.begin);
       const std::vector<Signal>& signals = plant.signals(segment);
@@ -142,6 +146,7 @@ private:
   Eigen::VectorXd readings(const Motion& motion) const {
     std::vector<double> list;
     for (const Watched& one : watched_) {
+      assert(one.noise > 0.0);
       const Eigen::VectorXd& values = motion[static_cast<std::size_t>(one.signal)];
       const Eigen::Index step =
           std::max<Eigen::Index>(1, (values.size() + most_readings - 1) / most_readings);

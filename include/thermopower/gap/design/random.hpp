@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <cassert>
 #include <cmath>
 #include <random>
 
@@ -20,9 +21,13 @@ public:
   /// Between two values.
   double uniform(double low, double high) { return low + (high - low) * share(); }
   /// Between two values above 0, each factor as likely as another.
-  double log_uniform(double low, double high) { return low * std::pow(high / low, share()); }
+  double log_uniform(double low, double high) {
+    assert(low > 0.0 && high > 0.0);
+    return low * std::pow(high / low, share());
+  }
   /// 0 to count - 1. @param count  above 0
   std::size_t index(std::size_t count) {
+    assert(count > 0);
     return static_cast<std::size_t>(share() * static_cast<double>(count));
   }
   /// True in so many of all cases.

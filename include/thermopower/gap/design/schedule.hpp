@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -37,6 +38,7 @@ struct Piece {
 
   /// Where it is after a time, -1..1.
   double at(double t_s) const {
+    assert(duration_s > 0.0 && period_s > 0.0 && last_period_s > 0.0);
     constexpr double turn = 6.283185307179586;
     const double phase = t_s / period_s - std::floor(t_s / period_s);
     switch (shape) {
@@ -100,6 +102,7 @@ struct Experiment {
 
 /// The value of a varied input at a place of its range. @param place  -1..1, 0 is at rest
 inline double value_at(const VariedInput& input, double place) {
+  assert(place >= -1.0 && place <= 1.0);
   const double rest = input.at_rest();
   return place >= 0.0 ? rest + place * (input.to - rest) : rest + place * (rest - input.from);
 }
@@ -108,6 +111,7 @@ inline double value_at(const VariedInput& input, double place) {
 /// fast for the input's slope is drawn out. Where an input's range has rest at one end, the other half of a shape is at rest.
 /// @param limits  valid ones
 inline Recording schedule_of(const Experiment& experiment, const Limits& limits) {
+  assert(experiment.courses.size() == limits.vary.size() && limits.row_s > 0.0);
   const double length_s = std::min(experiment.duration_s(), limits.duration_s);
   const auto rows =
       std::max<Eigen::Index>(2, static_cast<Eigen::Index>(std::floor(length_s / limits.row_s + 1e-9)) + 1);

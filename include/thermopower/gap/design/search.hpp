@@ -8,6 +8,7 @@
 #include <thermopower/gap/design/separation.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -51,6 +52,7 @@ public:
         settings_(settings),
         library_(limits),
         random_(seed) {
+    assert(!explanations_.empty());
     for (const Possible& one : explanations_) {
       few_.push_back(one.fit());
       for (std::size_t i = 0; i < settings.draws_in_search; ++i) few_.push_back(one.draw(random_));
@@ -92,6 +94,7 @@ public:
     };
     std::stable_sort(starts.begin(), starts.end(), better);
     starts.resize(std::min(starts.size(), settings_.starts));
+    assert(!starts.empty());
     const double begin = predictor_.rows_simulated();
     for (std::size_t i = 0; i < starts.size(); ++i) {
       // The first third of the rows goes to all of them alike, the rest to the best.
@@ -134,6 +137,7 @@ private:
   }
 
   void keep(Tried one) {
+    assert(one.apart.rows() == best_.rows() && one.apart.cols() == best_.cols());
     best_ = best_.cwiseMax(one.apart);
     tried_.push_back(std::move(one));
   }

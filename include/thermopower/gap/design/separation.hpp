@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -20,6 +21,7 @@ namespace thermopower::gap::design {
 /// Sci. 39 (1984) 81-85) for two models; a difference that other parameters make up for does not count.
 /// @return the square root of T, 0 or more
 inline double separation(const Prediction& one, const Prediction& other) {
+  assert(one.middle.size() == other.middle.size());
   const Eigen::VectorXd difference = one.middle - other.middle;
   const Eigen::Index count = one.open.cols() + other.open.cols();
   double square = difference.squaredNorm();
@@ -60,6 +62,7 @@ inline Separations separations_of(const std::vector<Prediction>& predictions) {
 /// @param best  the largest separation of each pair that any experiment reached
 /// @return the class of each explanation, numbered from 0 in the order of their first members
 inline std::vector<std::size_t> classes_of(const Separations& best) {
+  assert(best.rows() == best.cols());
   const auto count = static_cast<std::size_t>(best.rows());
   std::vector<std::size_t> label(count);
   for (std::size_t i = 0; i < count; ++i) label[i] = i;
@@ -85,6 +88,7 @@ inline std::vector<std::size_t> classes_of(const Separations& best) {
 /// @param label    class of each
 inline double expected_right(const Separations& separations, const std::vector<double>& weights,
                              const std::vector<std::size_t>& label) {
+  assert(label.size() == weights.size() && separations.rows() == static_cast<Eigen::Index>(weights.size()));
   double wrong = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {

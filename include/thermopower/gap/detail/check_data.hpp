@@ -13,6 +13,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -127,6 +128,7 @@ public:
     Eigen::VectorXd all(static_cast<Eigen::Index>(signals_.size()) * sample_.rows());
     std::size_t k = 0;
     for (const SimulatedSignal& signal : simulate(model, sample_, options_, catalogue_)) {
+      assert(k < signals_.size() && signal.values.size() == sample_.rows());
       const double noise = std::max(signals_[k].noise, 1e-12);
       for (Eigen::Index i = 0; i < sample_.rows(); ++i) {
         const double value = signal.values[i] / noise;
@@ -140,6 +142,7 @@ public:
 
   /// Largest root mean square of a change over the signals.
   double size(const Eigen::VectorXd& change) const {
+    assert(change.size() == static_cast<Eigen::Index>(signals_.size()) * sample_.rows());
     double most = 0.0;
     for (std::size_t k = 0; k < signals_.size(); ++k) {
       const double count = std::max(1.0, used_[k].sum());
@@ -177,6 +180,7 @@ inline bool is_column(plant::Need need) {
 
 /// A parameter of usual size: where fits begin.
 inline double usual_size(const Parameter& parameter, const Model& model, const Recording& recording) {
+  assert(!parameter.starts.empty() && parameter.lower <= parameter.upper);
   double value = parameter.starts.front();
   const bool voltage_driven = model.axis && model.axis->voltage_driven();
   const char* const input = parameter.starts_relative_to == plant::Input::drive_A
@@ -291,6 +295,7 @@ inline void judge_effects(const Model& model, const Recording& recording, const 
     report.effects.push_back(std::move(one));
     signatures.push_back(std::move(own));
   }
+  assert(signatures.size() == report.effects.size());
   for (std::size_t a = 0; a < signatures.size(); ++a)
     for (std::size_t b = 0; b < signatures.size(); ++b) {
       const double norm = signatures[a].norm() * signatures[b].norm();

@@ -7,6 +7,7 @@
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct DrivingColumn {
 /// What drives an output of a recording; a range of 0 where nothing does.
 inline DrivingColumn driving(const Model& model, const Inputs& inputs, Signal signal) {
   const bool current = signal == Signal::current_A;
+  assert(current || inputs.closed_loop || model.axis);
   const Eigen::VectorXd& values = current ? inputs.power_param
                                   : inputs.closed_loop
                                       ? (inputs.target_deg.size() > 0 ? inputs.target_deg : inputs.target_dps)

@@ -9,6 +9,7 @@
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ inline ReadingCount readings_of(const std::vector<Inputs>& part, Signal signal) 
   for (const Inputs& one : part) {
     if (!one.judged(signal)) continue;
     for (const RunSpan& run : one.runs) {
+      assert(run.begin >= 0 && run.begin <= run.end && run.end <= one.rows());
       if (run.size() == 0) continue;
       const Eigen::Index here = one.of(signal).segment(run.begin, run.size()).array().isFinite().count();
       sum.recorded += here;

@@ -10,6 +10,7 @@
 #include <thermopower/gap/options.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -59,6 +60,9 @@ public:
     problem.segments =
         thinned_axis(cut(*thin, extent.window_s, plant_of(model_)), extent.axis_rows, extent.together);
     problem.data = std::move(thin);
+    assert(std::all_of(problem.segments.begin(), problem.segments.end(), [&](const Segment& one) {
+      return one.inputs >= problem.data->data() && one.inputs < problem.data->data() + problem.data->size();
+    }));
     return problem;
   }
 

@@ -10,6 +10,7 @@
 #include <thermopower/gap/simulate.hpp>
 
 #include <array>
+#include <cassert>
 #include <vector>
 
 namespace thermopower::gap {
@@ -33,6 +34,7 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model,
   for (Segment& segment : segments) segment.warm_up = false;  // what is not judged is asked for, too
   engine::simulate_segments(
       model, catalogue, segments, options.mode, [&](std::size_t index, const Readings& readings) {
+        assert(segments[index].begin >= 0 && segments[index].end <= recording.rows());
         const std::vector<Signal>& signals = plant.signals(segments[index]);
         for (std::size_t k = 0; k < signals.size(); ++k) {
           const int at = column[static_cast<std::size_t>(signals[k])];
@@ -59,8 +61,10 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate_as_believed(const M
   const auto simulated = engine::simulated_as_given(model, segments, inputs, {rows}, catalogue);
   for (const SimulatedSignal& believed : simulated.front())
     for (SimulatedSignal& one : results)
-      if (to_string(one.signal) == to_string(believed.signal))
+      if (to_string(one.signal) == to_string(believed.signal)) {
+        assert(believed.values.size() == one.values.size());
         one.values = believed.values.array().isFinite().select(believed.values, one.values);
+      }
   return results;
 }
 

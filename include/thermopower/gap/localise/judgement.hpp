@@ -5,6 +5,7 @@
 #include <thermopower/gap/localise/projection.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -50,9 +51,15 @@ public:
   /// Indices of the freedoms chosen; the one that explains more first.
   const std::vector<std::size_t>& chosen() const { return choice_.best.blocks; }
   /// The k-th of them.
-  const plant::Freedom& freedom(std::size_t k) const { return balance_->freedoms[chosen()[k]]; }
+  const plant::Freedom& freedom(std::size_t k) const {
+    assert(k < chosen().size() && chosen()[k] < balance_->freedoms.size());
+    return balance_->freedoms[chosen()[k]];
+  }
   /// Share of the excess that the k-th explains, 0..1.
-  double worth(std::size_t k) const { return worth_[k]; }
+  double worth(std::size_t k) const {
+    assert(k < worth_.size());
+    return worth_[k];
+  }
   /// Its first coefficient.
   double coefficient(std::size_t k) const { return coefficient_[k]; }
   /// Its name.

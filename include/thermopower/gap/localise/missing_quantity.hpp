@@ -10,6 +10,7 @@
 #include <thermopower/gap/localise/thresholds.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -145,6 +146,7 @@ inline bool scatters_with(const Observed& o, const std::string& variable, const 
 
 /// Means over bins that the edges part; empty bins are left out.
 inline MissingQuantity binned(const Observed& o, const OrderingAxis& axis, const std::vector<double>& edges) {
+  assert(axis.values.size() == o.value.size());
   MissingQuantity q;
   q.signal = o.signal;
   q.quantity = o.quantity;

@@ -5,6 +5,7 @@
 #include <thermopower/gap/localise/localisation.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -53,6 +54,7 @@ struct Holding {
 
 /// The rows of a problem on one side of a stretch.
 inline Problem part_of(const Problem& whole, const Eigen::VectorXi& stretch, int from, int to) {
+  assert(stretch.size() == whole.y.size());
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < whole.y.size(); ++i)
     if (stretch[i] >= from && stretch[i] < to) rows.push_back(i);

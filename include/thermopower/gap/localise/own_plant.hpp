@@ -11,6 +11,7 @@
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -35,6 +36,7 @@ class OrderedRate {
 public:
   /// @param rate, variable  equally many; samples without a variable are left out
   OrderedRate(const std::vector<double>& rate, const std::vector<double>& variable, int bins) {
+    assert(variable.size() == rate.size() && bins > 0);
     for (std::size_t i = 0; i < rate.size(); ++i)
       if (std::isfinite(variable[i])) samples_.push_back({variable[i], rate[i]});
     sort_by(samples_, [](const auto& one) { return one.first; });

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -38,6 +39,7 @@ public:
   SplineSamples(const Eigen::VectorXd& x, const Eigen::VectorXd& y, double from, double to,
                 Eigen::Index pieces)
       : from_(from), width_((to - from) / static_cast<double>(segments)) {
+    assert(from < to && pieces > 0);
     const Eigen::Index count = std::min(x.size(), y.size());
     Eigen::MatrixXi crowd = Eigen::MatrixXi::Zero(segments, stretches);
     const auto counts = [&](Eigen::Index i) { return std::isfinite(y[i]) && x[i] >= from && x[i] <= to; };

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -59,6 +60,7 @@ inline CommonCauses common_causes(const std::vector<Probabilities>& units) {
     own.colwise() /= own.rowwise().sum().eval();
     share = own.colwise().mean().transpose();
   }
+  assert(!(std::abs(share.sum() - 1.0) > 1e-6));
   result.units.resize(units.size());
   for (Eigen::Index i = 0; i < rows; ++i)
     for (const auto& [name, place] : column) result.units[static_cast<std::size_t>(i)][name] = own(i, place);
@@ -78,6 +80,7 @@ inline CommonCauses common_causes(const std::vector<Probabilities>& units) {
       return 0.5 * (low + high);
     };
     one.share90 = {quantile(0.05), quantile(0.95)};
+    assert(one.share90.low <= one.share90.high);
     result.common.push_back(one);
   }
   std::stable_sort(result.common.begin(), result.common.end(),
@@ -166,6 +169,7 @@ inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::stri
     list.push_back(one);
   }
   const std::vector<bool> stands = holm(p, level);
+  assert(p.size() == list.size() && stands.size() == list.size());
   for (std::size_t i = 0; i < list.size(); ++i) list[i].stands = stands[i] && list[i].gain > 0.0;
   std::stable_sort(list.begin(), list.end(), [](const WeakEffect& a, const WeakEffect& b) {
     if (a.stands != b.stands) return a.stands;

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -47,6 +48,7 @@ inline bool moved(const FittedBothWays& unit, const std::string& name, Estimate&
   // of the wider fit's is the least that is believed.
   constexpr double least = 0.05;
   const double count = static_cast<double>(unit.with.size());
+  assert(unit.without.size() == unit.with.size());
   double by = 0.0, variance = 0.0;
   for (std::size_t i = 0; i < unit.with.size(); ++i) {
     const FittedExplanation &one = *unit.without[i], &other = *unit.with[i];
@@ -78,6 +80,7 @@ inline CommonShift common_shift(const std::vector<FittedBothWays>& units) {
     if (!all) continue;
     const MixedEffects fit = fit_mixed_effects(moved);
     const double error = fit.mean_covariance(0, 0);
+    assert(fit.size() == 1 && !(error < 0.0));
     result[name] = {fit.mean[0], error, error + fit.between(0, 0)};
   }
   return result;

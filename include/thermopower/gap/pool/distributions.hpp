@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace thermopower::gap::pool {
@@ -13,6 +14,7 @@ namespace thermopower::gap::pool {
 /// @param b  > 0
 /// @param x  0..1; outside of it the nearer end counts
 inline double regularised_beta(double a, double b, double x) {
+  assert(!(a <= 0.0) && !(b <= 0.0));
   if (!(x > 0.0)) return 0.0;
   if (x >= 1.0) return 1.0;
   if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - regularised_beta(b, a, 1.0 - x);
@@ -49,6 +51,7 @@ inline double t_tail(double value, double degrees) { return f_tail(value * value
 
 /// The value that Student's t exceeds in magnitude with probability `tail`, by bisection; tail in (0, 1).
 inline double t_quantile(double tail, double degrees) {
+  assert(tail > 0.0 && tail < 1.0 && !(degrees <= 0.0));
   double low = 0.0, high = 1.0;
   while (t_tail(high, degrees) > tail && high < 1e12) high *= 2.0;
   for (int i = 0; i < 100; ++i) {

@@ -5,6 +5,7 @@
 #include <thermopower/gap/pool/distributions.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -51,12 +52,14 @@ struct LogScatter {
 /// so that slow drifts hardly count, and their median, so that jumps of a few units do not.
 inline LogScatter log_scatter(const std::vector<TimeSeries>& fleet) {
   std::vector<double> squares, errors;
-  for (const TimeSeries& one : fleet)
+  for (const TimeSeries& one : fleet) {
+    assert(one.variance.size() == one.at.size());
     for (std::size_t i = 1; i < one.at.size(); ++i) {
       const double step = one.at[i] - one.at[i - 1];
       squares.push_back(step * step);
       errors.push_back(one.variance[i] + one.variance[i - 1]);
     }
+  }
   LogScatter result;
   if (squares.empty()) return result;
   // The variance at which half of the squared steps, each over its own variance, lie below the median of chi^2.
@@ -88,6 +91,7 @@ inline LogScatter log_scatter(const std::vector<TimeSeries>& fleet) {
 inline Drift find_drift(const TimeSeries& series, const LogScatter& scatter) {
   Drift result;
   const std::size_t n = series.at.size();
+  assert(series.time.size() == n && series.variance.size() == n && !(scatter.variance < 0.0));
   constexpr std::size_t fewest = 4;
   if (n < fewest) return result;
   std::vector<double> weight(n);

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -184,6 +185,7 @@ private:
     std::vector<Probabilities> units;
     for (const UnitVerdict& one : result_.units) units.push_back(likely(one));
     const CommonCauses found = common_causes(units);
+    assert(found.units.size() == result_.units.size());
     const double count = static_cast<double>(units.size());
     const double least = std::max(static_cast<double>(options_.family_units), options_.family_share * count);
     for (const Prevalence& one : found.common) {
@@ -301,6 +303,7 @@ private:
   std::optional<Estimate> together(const UnitVerdict& unit, const Family& family) const {
     const auto k = static_cast<Eigen::Index>(family.coordinates.size());
     Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(k, k), sum = scatter;
+    assert(family.scatter.size() == family.coordinates.size());
     for (Eigen::Index c = 0; c < k; ++c) scatter(c, c) = family.scatter[static_cast<std::size_t>(c)].variance;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k);
     std::vector<Estimate> used;
@@ -362,6 +365,7 @@ private:
       misfits.push_back({Eigen::VectorXd::Constant(1, sum / count), Eigen::MatrixXd::Zero(1, 1)});
       fitted.push_back(i);
     }
+    assert(misfits.size() == fitted.size() && estimates.size() == compared.size());
     const OddUnits by_misfit = find_odd_units(misfits, level);
     std::vector<double> usual;
     for (const Estimate& one : misfits) usual.push_back(one.at[0]);
@@ -410,6 +414,7 @@ private:
   /// Whether weak effects may be looked for in a unit. A cause that the others lack is not a weak effect, and a fit with a
   /// wrong constant held fixed shows that constant.
   bool lacks_nothing(const UnitVerdict& unit) const {
+    assert(!unit.member || unit.family >= 0);
     if (!unit.member || !result_.families[static_cast<std::size_t>(unit.family)].cause.empty()) return false;
     if (unit.oddity != Oddity::none || !unit.drifts.empty()) return false;
     return std::all_of(unit.logs.begin(), unit.logs.end(), [&](std::size_t log) {

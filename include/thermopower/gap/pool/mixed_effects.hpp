@@ -105,6 +105,7 @@ inline MixedEffects fit_mixed_effects(const std::vector<Estimate>& units) {
     if (change < settled) break;
   }
   weigh();
+  assert(!(between.diagonal().array() < 0.0).any());
   result.mean = mean;
   result.mean_covariance = error;
   result.between = between;
@@ -166,6 +167,7 @@ struct Range {
 
 /// The range that a further unit of the fleet falls into with a probability, by Student's t.
 inline Range prediction_range(const MixedEffects& fleet, Eigen::Index coordinate, double probability) {
+  assert(coordinate >= 0 && coordinate < fleet.size());
   const double reach =
       t_quantile(1.0 - probability, fleet.between_degrees[coordinate]) *
       std::sqrt(fleet.between(coordinate, coordinate) + fleet.mean_covariance(coordinate, coordinate));

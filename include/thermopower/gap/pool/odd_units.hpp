@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -40,6 +41,7 @@ inline double median(std::vector<double> values) {
 
 /// The units nearest to the coordinates' medians: a core that up to two fifths of odd units cannot pull away.
 inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
+  assert(!units.empty());
   const Eigen::Index k = units.front().at.size();
   std::vector<double> far(units.size(), 0.0);
   for (Eigen::Index c = 0; c < k; ++c) {
@@ -60,6 +62,7 @@ inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
   }
   const std::size_t least =
       std::max<std::size_t>((units.size() * 3) / 5, std::min<std::size_t>(units.size(), 4));
+  assert(least > 0 && least <= units.size());
   std::vector<double> sorted = far;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(least - 1), sorted.end());
   constexpr double plain =
@@ -79,6 +82,7 @@ struct Others {
 
 /// A fleet without one of its units: its part of the mean, and of the last iteration of the spread, is taken out.
 inline Others without(const Estimate& one, const MixedEffects& fleet, const Eigen::VectorXd& information) {
+  assert(fleet.units > 1 && one.at.size() == fleet.size() && information.size() == fleet.size());
   const double count = static_cast<double>(fleet.units);
   const Eigen::MatrixXd& between = fleet.between;
   const Eigen::MatrixXd weight = inverse_of(one.covariance + between),
@@ -103,6 +107,7 @@ inline Others without(const Estimate& one, const MixedEffects& fleet, const Eige
 /// @param limit  probability below which it is odd
 inline Standing standing_of(const Estimate& one, const Others& others, double limit) {
   const Eigen::Index k = one.at.size();
+  assert(k > 0 && others.mean.size() == k && others.information.size() == k);
   const Eigen::VectorXd away = one.at - others.mean;
   const Eigen::MatrixXd whole = one.covariance + others.spread + others.error;
   const double square = std::max(0.0, away.dot(inverse_of(whole) * away));

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -164,6 +165,7 @@ private:
                                       const Normal& normal, const Eigen::VectorXd& ridge,
                                       const Eigen::VectorXd& pull) {
     const Eigen::Index n = static_cast<Eigen::Index>(list.size());
+    assert(normal.matrix.rows() == n && normal.gradient.size() == n && ridge.size() == n && pull.size() == n);
     Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
     std::vector<bool> held(static_cast<std::size_t>(n), false);
     for (Eigen::Index round = 0; round <= n; ++round) {
@@ -193,6 +195,7 @@ private:
         const Eigen::Index a = open[static_cast<std::size_t>(i)];
         const BoundedCoordinate& one = list[static_cast<std::size_t>(a)];
         const double at = one.at.of(point);
+        assert(one.lower <= one.upper);
         step[a] = solved[i];
         const double bounded = std::clamp(at + step[a], one.lower, one.upper);
         if (bounded == at + step[a]) continue;

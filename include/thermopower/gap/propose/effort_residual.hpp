@@ -263,8 +263,10 @@ private:
 
     static std::vector<Scalar> factors(const EffortPoint& point, const std::vector<EffortCoordinate>& free) {
       std::vector<Scalar> list(point.factors.begin(), point.factors.end());
-      for (std::size_t k = 0; k < free.size(); ++k)
+      for (std::size_t k = 0; k < free.size(); ++k) {
+        assert(!free[k].is_constant || free[k].constant < list.size());
         if (free[k].is_constant) plant::seed(list[free[k].constant], static_cast<int>(k) + 1);
+      }
       return list;
     }
 
@@ -273,9 +275,11 @@ private:
       std::vector<plant::AddedEffect<Scalar>> list;
       for (const plant::AddedEffect<double>& one : point.effects)
         list.push_back({one.entry, std::vector<Scalar>(one.parameters.begin(), one.parameters.end())});
-      for (std::size_t k = 0; k < free.size(); ++k)
-        if (!free[k].is_constant)
-          plant::seed(list[free[k].effect].parameters[free[k].parameter], static_cast<int>(k) + 1);
+      for (std::size_t k = 0; k < free.size(); ++k) {
+        if (free[k].is_constant) continue;
+        assert(free[k].effect < list.size() && free[k].parameter < list[free[k].effect].parameters.size());
+        plant::seed(list[free[k].effect].parameters[free[k].parameter], static_cast<int>(k) + 1);
+      }
       return list;
     }
 

@@ -99,6 +99,8 @@ private:
     const Eigen::Index count = (one.effort.size() + every - 1) / every;
     piece.end = filled += count;
     assert(piece.end <= grid.t_s.size());
+    assert((one.rate.size() == 0 || one.rate.size() == one.effort.size()) &&
+           (one.angle.size() == 0 || one.angle.size() == one.effort.size()));
     const LowPass low_pass(cutoff);
     const auto put = [&](const Eigen::VectorXd& fine, Eigen::VectorXd& to) {
       for (Eigen::Index i = 0; i < count; ++i) to[piece.begin + i] = fine[i * every];
@@ -145,7 +147,10 @@ private:
       for (double at = 0.5 * every; at < static_cast<double>(all.size()); at += every)
         pieces.push_back(all[static_cast<std::size_t>(at)]);
     }
-    for (const EffortPiece& one : pieces) grid.runs.push_back({one.begin, one.end, {}});
+    for (const EffortPiece& one : pieces) {
+      assert(one.begin >= 0 && one.begin <= one.end && one.end <= rows());
+      grid.runs.push_back({one.begin, one.end, {}});
+    }
   }
 
   /// The low-passed effort between its rows: Catmull's and Rom's cubic.

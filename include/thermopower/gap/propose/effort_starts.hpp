@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -41,8 +42,10 @@ inline bool counts_cycles(const plant::CatalogueEntry& entry) {
 /// The first start of each parameter, or its standard.
 inline std::vector<double> first_starts(const plant::CatalogueEntry& entry) {
   std::vector<double> values;
-  for (const plant::Parameter& one : entry.info.parameters)
+  for (const plant::Parameter& one : entry.info.parameters) {
+    assert(one.standard || !one.starts.empty());
     values.push_back(one.standard ? *one.standard : one.starts.front());
+  }
   return values;
 }
 
@@ -120,8 +123,10 @@ inline void bound_inertia(const Model& model, const EffortResidual& data,
 inline std::vector<std::vector<double>> starts_of(const plant::CatalogueEntry& entry,
                                                   const EffortResidual& data, const Eigen::VectorXd& left) {
   const ComparedRows& compared = data.compared();
+  assert(left.size() == compared.size());
   std::vector<std::vector<double>> all = {{}};
   for (const plant::Parameter& parameter : entry.info.parameters) {
+    assert(parameter.lower <= parameter.upper);
     std::vector<double> starts = parameter.starts;
     if (!is_fitted(parameter)) {
       starts = {parameter.standard.value_or(starts.front())};

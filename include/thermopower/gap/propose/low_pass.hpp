@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace thermopower::gap::engine {
@@ -16,6 +17,7 @@ class LowPass {
 public:
   /// @param cutoff  as a share of the sampling rate, above 0 and below 0.5
   explicit LowPass(double cutoff) : reach_(static_cast<Eigen::Index>(std::ceil(memory_ / cutoff))) {
+    assert(cutoff > 0.0 && cutoff < 0.5);
     const double k = std::tan(3.14159265358979323846 * cutoff), q = std::sqrt(2.0);
     const double scale = 1.0 / (1.0 + q * k + k * k);
     b_ = k * k * scale;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@ namespace thermopower::gap::engine {
 /// @param count      of them that are returned, at most; those beside a better one are left out
 inline std::vector<double> cycles_in_turn(const Eigen::VectorXd& angle_rad, const Eigen::VectorXd& values,
                                           double periods, int most, std::size_t count) {
+  assert(angle_rad.size() == values.size());
   if (values.size() < 8) return {};
   const double travel = angle_rad.maxCoeff() - angle_rad.minCoeff();
   const int first =

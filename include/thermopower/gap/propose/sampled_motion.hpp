@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -135,6 +136,7 @@ private:
       const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
       std::nth_element(steps.begin(), middle, steps.end());
       const double interval_s = *middle;
+      assert(interval_s > 0.0);
       for (std::size_t i = 0, first = 0; i < stamps.size(); ++i) {
         const bool last = i + 1 == stamps.size();
         if (!last && stamps[i + 1] - stamps[i] <= propose_thresholds.longest_hole * interval_s) continue;
@@ -174,6 +176,7 @@ private:
 
   static Stretch sampled(const plant::AxisAtRows& measured, const Span& one) {
     const Inputs& inputs = measured.inputs();
+    assert(one.place < inputs.runs.size() && one.interval_s > 0.0);
     const RunSpan& run = inputs.runs[one.place];
     Stretch result;
     result.recording = one.recording;
@@ -192,6 +195,7 @@ private:
   /// Means of held values over the intervals of the grid.
   static Eigen::VectorXd held_means(const Inputs& inputs, const RunSpan& run, const Eigen::VectorXd& values,
                                     const Span& one) {
+    assert(run.begin >= 0 && run.end <= values.size());
     Eigen::VectorXd means(one.count);
     Eigen::Index row = run.begin;
     for (Eigen::Index i = 0; i < one.count; ++i) {
@@ -213,6 +217,7 @@ private:
   /// Samples joined by straight lines, at the rows of the grid.
   static Eigen::VectorXd straight(const Inputs& inputs, const RunSpan& run, const Eigen::VectorXd& samples,
                                   const Span& one) {
+    assert(run.begin >= 0 && run.end <= samples.size());
     Eigen::VectorXd values(one.count);
     Eigen::Index before = -1, after = run.begin;
     const auto next = [&](Eigen::Index from) {

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -32,6 +33,7 @@ inline bool is_material(const InverseScore& before, const InverseScore& after) {
   if (after.share > (1.0 - propose_thresholds.least_reduction) * before.share) return false;
   if (after.share > before.share - propose_thresholds.least_share) return false;
   const std::size_t n = after.block_gain.size();
+  assert(before.block_gain.size() >= n);
   Eigen::VectorXd gain(static_cast<Eigen::Index>(n));
   for (std::size_t b = 0; b < n; ++b)
     gain[static_cast<Eigen::Index>(b)] = after.block_gain[b] - before.block_gain[b];

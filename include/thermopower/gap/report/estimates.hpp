@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -29,6 +30,7 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
                                                 const Weight& weight) {
   const Covariance covariance = covariance_of(candidate, weight);
   const std::size_t constants = model.calibrated().size();
+  assert(constants <= candidate.list.size());
   std::vector<ParameterEstimate> list;
   for (std::size_t i = 0; i < candidate.list.size(); ++i) {
     const Coordinate& one = candidate.list[i];
@@ -37,6 +39,7 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
                   static_cast<int>(i)) != candidate.explanation.released.end();
     if ((i < constants && !released) || one.still) continue;
     const Interval interval = interval_of(candidate, i, covariance);
+    assert(i < candidate.fit.at_bound.size());
     ParameterEstimate estimate;
     estimate.name = i < constants ? name_of_move(one) : one.name;
     estimate.value = candidate.value(i);
@@ -61,6 +64,7 @@ inline std::vector<Eigen::Index> moving(const Candidate& candidate) {
 inline Eigen::MatrixXd covariance_of_moving(const Candidate& candidate, const Weight& weight) {
   const Eigen::MatrixXd all = covariance_of(candidate, weight).of;
   if (all.size() == 0) return all;
+  assert(all.rows() == static_cast<Eigen::Index>(candidate.list.size()) && all.cols() == all.rows());
   const std::vector<Eigen::Index> places = moving(candidate);
   const Eigen::Index n = static_cast<Eigen::Index>(places.size());
   Eigen::MatrixXd some(n, n);

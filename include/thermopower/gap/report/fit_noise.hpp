@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 #include <vector>
 
@@ -37,6 +38,8 @@ inline Errors errors_left(const FitProblem& problem, const Candidate& candidate)
   Errors left;
   problem.evaluate(candidate.explanation, candidate.list, candidate.fit.point, candidate.fit.starts, false,
                    [&](std::size_t segment, const FitProblem::Residuals& one) {
+                     assert(one.signal.size() == one.row.size() &&
+                            one.value.size() == static_cast<Eigen::Index>(one.row.size()));
                      for (std::size_t i = 0; i < one.row.size(); ++i) {
                        const auto at = static_cast<std::size_t>(one.signal[i]);
                        left.of[at].push_back(one.value[static_cast<Eigen::Index>(i)] * problem.sigma[at]);
@@ -58,6 +61,7 @@ enum class TakenForNoise {
 inline std::array<double, signal_count> noise_left(const FitProblem& problem, const Candidate& candidate,
                                                    const std::vector<Inputs>& recordings,
                                                    TakenForNoise taken = TakenForNoise::what_looks_like_it) {
+  assert(!problem.segments.empty());
   const bool is_averaged = problem.segments.front().inputs->repeats.size() > 0;
   const Errors left = errors_left(problem, candidate);
   RateBesideAngle::Most most;

@@ -8,6 +8,7 @@
 #include <thermopower/gap/simulated_signal.hpp>
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -26,7 +27,10 @@ struct RowsAsGiven {
 /// Where the rows of a recording are that the check has prepared.
 inline RowsAsGiven rows_as_given(const PreparedRecording& prepared) {
   RowsAsGiven rows{prepared.source_rows(), prepared.recorded_rows()};
-  for (Eigen::Index& place : rows.place) place -= prepared.recording().first_row;
+  for (Eigen::Index& place : rows.place) {
+    place -= prepared.recording().first_row;
+    assert(place >= 0 && place < rows.count);
+  }
   return rows;
 }
 
@@ -39,6 +43,7 @@ inline std::vector<std::vector<SimulatedSignal>> simulated_as_given(const Model&
                                                                     const std::vector<Inputs>& inputs,
                                                                     const std::vector<RowsAsGiven>& rows,
                                                                     const Catalogue& catalogue) {
+  assert(rows.size() == inputs.size());
   std::vector<std::vector<SimulatedSignal>> result(inputs.size());
   std::vector<std::array<int, signal_count>> columns(inputs.size());
   for (std::size_t r = 0; r < inputs.size(); ++r)
@@ -54,6 +59,7 @@ inline std::vector<std::vector<SimulatedSignal>> simulated_as_given(const Model&
     const Segment& segment = segments[index];
     if (segment.warm_up) return;
     const auto r = static_cast<std::size_t>(segment.inputs - inputs.data());
+    assert(r < inputs.size() && segment.end <= static_cast<Eigen::Index>(rows[r].place.size()));
     const std::vector<Signal>& signals = plant.signals(segment);
     for (std::size_t k = 0; k < signals.size(); ++k) {
       const int column = columns[r][static_cast<std::size_t>(signals[k])];

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -27,11 +28,13 @@ public:
   /// @param runs    inside which rows follow on each other
   NoiseAtARow(const Eigen::VectorXd& values, const std::vector<plant::RunSpan>& runs) : values_(values) {
     double sum = 0.0, count = 0.0;
-    for (const plant::RunSpan& run : runs)
+    for (const plant::RunSpan& run : runs) {
+      assert(run.begin >= 0 && run.end <= values.size());
       for (Eigen::Index row = run.begin + around; row + around < run.end; ++row) {
         const double left = left_at(row);
         if (std::isfinite(left)) sum += left * left, count += 1.0;
       }
+    }
     if (count > 0.0) variance_ = sum / count / (1.0 - own);
     // Steps that the noise hardly crosses are rounded alike in neighbouring rows, which tell nothing of it then.
     constexpr double crossed = 0.5;
@@ -44,6 +47,7 @@ public:
   /// Magnitude of the noise in a row of a run, as a share of the standard deviation of all. It is 1 if the rows around do
   /// not tell.
   double share_at(Eigen::Index row, const plant::RunSpan& run) const {
+    assert(run.begin >= 0 && run.end <= values_.size());
     if (!(variance_ > 0.0) || row - around < run.begin || row + around >= run.end) return 1.0;
     const double left = left_at(row);
     return std::isfinite(left) ? std::sqrt(left * left / variance_ + own) : 1.0;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -39,6 +40,7 @@ inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& 
   const RateBesideAngle::Most most = both.most_noise();
   for (std::size_t i = 0; i < signal_count; ++i) {
     const std::size_t count = errors.of[i].size();
+    assert(errors.segment[i].size() == count && errors.row[i].size() == count);
     std::vector<double> levels, measured;  // the latter of an axis: what drives it is integrated twice
     for (std::size_t k = 0; k < count; ++k) {
       const Segment& of = segments[static_cast<std::size_t>(errors.segment[i][k])];

@@ -116,6 +116,7 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
 inline std::vector<ConstantEstimate> constants_of(const Candidate& candidate, const Model& model,
                                                   const Weight& weight) {
   constexpr double hardly = 0.9;  // of what the file says is known: then the data say nothing of it
+  assert(candidate.list.size() >= model.calibrated().size());
   const Covariance covariance = covariance_of(candidate, weight);
   std::vector<ConstantEstimate> list;
   std::size_t at = 0;
@@ -163,14 +164,17 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
       }
     result.cause.push_back(std::move(cause));
   }
-  for (std::size_t index : choice.alternatives)
+  for (std::size_t index : choice.alternatives) {
+    assert(index < candidates.size());
     result.alternatives.push_back(candidates[index].explanation.ids(model));
+  }
   result.correlation = correlation_of_parameters(chosen, weight, model.calibrated().size());
 }
 
 /// If constants alone were fitted, those that moved by more than is known of them are the causes, whether they were
 /// released or not. Explanations that turn out to be the same, or to be empty, are dropped, the worse one.
 inline void name_moved_constants(std::vector<Candidate>& candidates, const Model& model) {
+  assert(!candidates.empty());
   std::vector<Candidate> kept{std::move(candidates.front())};
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     Candidate& one = candidates[i];
@@ -242,6 +246,7 @@ inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
   }
   for (const SignalSeries& series : result.series) {
     if (series.signal != rest.signal || series.t_s.size() < 3) continue;
+    assert(series.augmented.size() == series.t_s.size() && series.measured.size() == series.t_s.size());
     std::vector<double> errors, steps;
     for (Eigen::Index row = 0; row < series.t_s.size(); ++row) {
       const double error = series.augmented[row] - series.measured[row];
@@ -284,6 +289,8 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
       floor_of(fits ? fitted : model, best, sd_of(noise), segments, catalogue, FirstReadings::as_they_are);
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (before.of[i].empty()) continue;
+    // What was measured tells which rows have an error, whatever the model.
+    assert(recalibrated.of[i].size() == before.of[i].size() && after.of[i].size() == before.of[i].size());
     const Signal signal = static_cast<Signal>(i);
     GapScore gap;
     gap.signal = signal_name(model, signal);

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -31,6 +32,10 @@ public:
   RateBesideAngle(const Errors& errors, const std::vector<Segment>& segments) {
     constexpr auto angle = static_cast<std::size_t>(Signal::angle_deg),
                    rate = static_cast<std::size_t>(Signal::rate_dps);
+    assert(errors.segment[angle].size() == errors.of[angle].size() &&
+           errors.row[angle].size() == errors.of[angle].size());
+    assert(errors.segment[rate].size() == errors.of[rate].size() &&
+           errors.row[rate].size() == errors.of[rate].size());
     const auto place = [&](std::size_t signal, std::size_t at) {
       return std::make_pair(errors.segment[signal][at], errors.row[signal][at]);
     };
@@ -44,6 +49,7 @@ public:
       Row one{segment, t_s, errors.of[angle][k], errors.of[rate][i], 0.0, 0};
       if (!rows_.empty() && segment == last_.first && row == last_.second + 1) {
         const Row& before = rows_.back();
+        assert(t_s > before.t_s);
         one.went = before.went + 0.5 * (before.rate + one.rate) * (t_s - before.t_s);
         one.since = before.since + 1;
       }
@@ -200,6 +206,7 @@ private:
 
   /// Variance of the mean of noise of variance 1 over some intervals, by trapezoids.
   static double of_mean(double memory, std::size_t intervals) {
+    assert(memory >= 0.0 && memory < 1.0 && intervals > 0);
     const auto count = static_cast<double>(intervals);
     double variance = (count - 0.5) / (count * count), kept = 1.0;
     for (std::size_t lag = 1; lag <= intervals; ++lag) {

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -53,6 +54,7 @@ inline Errors errors_of(const Model& model, const std::vector<Segment>& segments
   const auto take = [&](std::size_t index, const Readings& readings) {
     const Segment& segment = segments[index];
     const Inputs& inputs = *segment.inputs;
+    assert(segment.begin >= 0 && segment.end <= inputs.rows());
     if (segment.warm_up) return;
     const std::vector<Signal>& signals = plant.signals(segment);
     for (std::size_t k = 0; k < signals.size(); ++k) {
@@ -81,7 +83,10 @@ public:
   explicit Dice(std::uint64_t seed) : state_(seed) {}
 
   /// A whole number in [0, count).
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
+  std::size_t below(std::size_t count) {
+    assert(count > 0);
+    return static_cast<std::size_t>(bits() % count);
+  }
 
   /// A number in [0, 1).
   double share() { return static_cast<double>(bits() >> 11) * (1.0 / 9007199254740992.0); }
@@ -154,6 +159,7 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
 
 /// Noise with what a noisy command adds to it, at most `rms`, which the best simulation leaves: that has both.
 inline double with_wander(double noise, double wander, double rms) {
+  assert(!(noise < 0.0) && !(rms < 0.0));
   return wander > 0.0 ? std::max(noise, std::min(std::hypot(noise, wander), rms)) : noise;
 }
 
@@ -216,6 +222,7 @@ inline Start known_off(const Plant& plant, Rollout& rollout, const Segment& segm
   Start off = Start::Zero(sd.size());
   if (segment.axis || !begins_off(plant, segment)) return off;
   const Start fitted = start_of(plant, rollout, segment, &sigma);
+  assert(fitted.size() == sd.size());
   for (Eigen::Index i = 0; i < sd.size(); ++i)
     if (sd[i] > 0.0 && std::abs(fitted[i]) > more_than_noise * sd[i]) off[i] = std::abs(fitted[i]);
   return off;
@@ -367,7 +374,9 @@ inline Interval shrinkage_interval(const std::vector<double>& before, const std:
     const double by = ratios[static_cast<std::size_t>(quantile * (draws - 1))] - middle;
     return middle + std::copysign(std::hypot(student * by, between_days), quantile - 0.5);
   };
-  return {1.0 - std::exp(widened(0.975)), 1.0 - std::exp(widened(0.025))};
+  const Interval interval{1.0 - std::exp(widened(0.975)), 1.0 - std::exp(widened(0.025))};
+  assert(!(interval.low > interval.high));
+  return interval;
 }
 
 }  // namespace thermopower::gap::engine

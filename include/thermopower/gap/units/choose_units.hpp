@@ -9,6 +9,7 @@
 #include <thermopower/gap/units/posterior.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -93,6 +94,7 @@ private:
       }
     }
     const std::vector<OddSizes> odd = odd_sizes(sizes);
+    assert(odd.size() == sizes.size() && believed.size() == recordings_.size());
     std::size_t at = 0;
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
       const Given& one = recordings_[i];
@@ -123,6 +125,7 @@ private:
 
   void choose() {
     const UnitPosterior posterior(evidence_, most_power_);
+    assert(!table_.empty() && evidence_.size() == parts_.size());
     const UnitHypothesis& none = table_.front();
     chosen_.assign(parts_.size(), &none);
     common_ = &none;
@@ -206,6 +209,7 @@ private:
   }
 
   Finding finding(std::size_t first) const {
+    assert(first < parts_.size() && chosen_.size() == parts_.size());
     const UnitHypothesis& unit = *chosen_[first];
     const Recording& recording = parts_[first].from->recording();
     Finding said{unit.kind(),  severity(first), recording.name,      unit.column(),

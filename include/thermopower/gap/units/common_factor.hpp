@@ -6,6 +6,7 @@
 #include <thermopower/gap/units/evidence.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -45,6 +46,7 @@ struct SharedMeasures {
 /// Adds a warning where one factor, or one that no constant has, explains what several constants would have to.
 inline void report_common_factor(const SharedMeasures& of, const std::string& recording,
                                  std::vector<Finding>& findings) {
+  assert(!of.parts.empty());
   constexpr CommonFactorThresholds limit;
   const auto add = [&](FindingKind kind, const char* column, const std::string& message, const char* mend) {
     findings.push_back({kind, Severity::warning, recording, column, message, mend, FindingAction::none, {}});

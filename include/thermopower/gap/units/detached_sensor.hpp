@@ -8,6 +8,7 @@
 #include <thermopower/plant/bench_at_rows.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <variant>
@@ -38,6 +39,7 @@ struct DetachedSensorThresholds {
 /// Rise that heat causes in one body, row by row, every run from the air on.
 inline Eigen::VectorXd heated_rise(const Inputs& inputs, const Eigen::VectorXd& heat_W,
                                    double capacity_J_per_K, double conductance_W_per_K) {
+  assert(heat_W.size() == inputs.rows() && capacity_J_per_K > 0.0);
   Eigen::VectorXd rise = Eigen::VectorXd::Zero(heat_W.size());
   for (const RunSpan& run : inputs.runs)
     for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -72,6 +73,7 @@ struct WarmingRows {
 inline WarmingTold regress_warming(const WarmingRows& rows) {
   constexpr HeatEvidenceThresholds limit;
   WarmingTold best;
+  assert(rows.heating_K_per_s.size() == rows.t_s.size() && rows.cooling_K_per_s.size() == rows.t_s.size());
   const ReadRows read(rows.t_s, rows.runs, rows.body_C);
   for (std::size_t length = limit.shortest; length <= limit.longest; length *= 2) {
     KeptRegression regression;
@@ -119,6 +121,7 @@ struct FactorTold {
 inline FactorTold factor_of(const Eigen::VectorXd& measured, const Eigen::VectorXd& expected) {
   constexpr HeatEvidenceThresholds limit;
   constexpr double low = 0.1, high = 0.9;
+  assert(measured.size() >= expected.size());
   double most = 0.0;
   for (const double value : expected)
     if (std::isfinite(value)) most = std::max(most, std::abs(value));

@@ -7,6 +7,7 @@
 #include <thermopower/gap/units/motion_evidence.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ inline TemperatureRange temperature_range(const Recording& recording, const std:
   range.low = quantile_of(values, low);
   range.high = quantile_of(values, high);
   range.typical = median_of(values);
+  assert(range.low <= range.typical && range.typical <= range.high);
   return range;
 }
 
@@ -36,6 +38,7 @@ inline TemperatureRange temperature_range(const Recording& recording, const std:
 inline void measure_axis(const Model& model, const PreparedRecording& prepared, UnitEvidence& to) {
   constexpr MotionEvidenceThresholds limit;
   const Inputs& inputs = prepared.inputs();
+  assert(model.axis);
   const RigidAxisModel& axis = *model.axis;
   const bool voltage = axis.voltage_driven();
   const bool has_rate = inputs.judged(Signal::rate_dps), has_angle = inputs.judged(Signal::angle_deg);

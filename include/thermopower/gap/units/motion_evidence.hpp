@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -71,6 +72,7 @@ public:
   /// @param column  NaN: not read
   Travel(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs, const Eigen::VectorXd& column)
       : went_(Eigen::VectorXd::Zero(column.size())), lost_(static_cast<std::size_t>(column.size()), 0) {
+    assert(column.size() > 0 && column.size() == t_s.size());
     // A column may be read more seldom than others.
     const Eigen::Index read = std::max<Eigen::Index>(1, column.array().isFinite().count()),
                        longest_hole = 8 * (column.size() / read);
@@ -287,6 +289,7 @@ private:
 
   /// Adds one interval of everything but the acceleration.
   void add(Window& window, const ReadRows::Part& part, double rate, const Reading& reading) const {
+    assert(part.row >= 0 && part.row < part.next && part.next < t_s_.size());
     for (Eigen::Index row = part.row; row < part.next; ++row) {
       const Eigen::Index later = std::clamp<Eigen::Index>(row + reading.earlier, 0, command_.size() - 1);
       window.response += part.weight * command_[later] * (t_s_[row + 1] - t_s_[row]);
@@ -316,6 +319,7 @@ private:
   }
 
   Window window_of_angle(const std::vector<ReadRows::Part>& parts, const Reading& reading) const {
+    assert(!parts.empty());
     constexpr std::size_t part_of_bell = 8;
     Window window = empty_window();
     const std::size_t around = std::max<std::size_t>(1, parts.size() / part_of_bell);

@@ -99,6 +99,7 @@ public:
 
   /// Whether a common hypothesis holds in every part: what it leaves of the measures that it changes is near 1.
   bool holds_everywhere(const UnitHypothesis& one, const Assignment& units) const {
+    assert(units.size() == parts_.size());
     for (std::size_t k = 0; k < unit_measure_count; ++k) {
       const auto kind = static_cast<UnitMeasure>(k);
       for (std::size_t i = 0; i < parts_.size() && one.turns_sign(); ++i)
@@ -194,6 +195,7 @@ private:
 
   /// What only one part's numbers say: signs, temperatures, clocks, exchanged columns.
   double own(std::size_t part, const UnitHypothesis& one, const UnitHypothesis& common) const {
+    assert(part < parts_.size());
     const UnitEvidence& of = parts_[part];
     double sum = -possible_price(of, one);
     const bool lacks_column = one.is_none() && !common.applies_to(of);
@@ -285,6 +287,7 @@ private:
         kind == UnitMeasure::current || kind == UnitMeasure::heating || kind == UnitMeasure::cooling;
     if (is_of_winding && is_odd(parts_[part].motor)) return {};
     const double expected = one.expected(parts_[part])[static_cast<std::size_t>(kind)];
+    assert(measured.sd > 0.0 && expected != 0.0);
     return {true, std::log(measured.value / std::abs(expected)), measured.sd};
   }
 
