@@ -122,17 +122,12 @@ private:
     return list;
   }
 
-  static bool has_curve(const Explanation& one) {
-    return std::any_of(one.effects.begin(), one.effects.end(),
-                       [](const CatalogueEntry* entry) { return entry->info.curve.has_value(); });
-  }
-
   /// The likeliest of what predicts like a candidate, with as many causes or fewer, and no curve in place of a name.
   std::size_t likeliest_alike(std::size_t place) const {
     std::size_t best = place;
     for (std::size_t i = 1; i < candidates_.size(); ++i)
       if (candidates_[i].explanation.size() <= candidates_[place].explanation.size() &&
-          has_curve(candidates_[i].explanation) <= has_curve(candidates_[place].explanation) &&
+          candidates_[i].explanation.has_curve() <= candidates_[place].explanation.has_curve() &&
           likeness(signatures_[i], signatures_[place]) >= alike_from &&
           candidates_[i].probability > candidates_[best].probability)
         best = i;

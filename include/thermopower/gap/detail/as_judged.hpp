@@ -132,9 +132,9 @@ public:
     attempt.reference.recalibrated = scored(attempt.recalibrated);
   }
 
-  /// What held-out motion says against candidates, nats: how much worse than the best of them they predict it from starts as
-  /// measured. A window counts once, since its errors go together. In a closed loop a heavy axis predicts motion well, and true
-  /// causes somewhat worse: that far nothing is said.
+  /// What held-out motion says against candidates, nats: how much worse than the best of those with a name they predict it from
+  /// starts as measured. A window counts once, since its errors go together. In a closed loop a heavy axis predicts motion well, and
+  /// true causes somewhat worse: that far nothing is said.
   Eigen::VectorXd lost_in_motion(const std::vector<Candidate>& candidates) const {
     constexpr double somewhat_worse = 1.5;  // times; cogging of a real motor under a stiff loop makes 1.3
     const std::vector<Segment> segments = posing_.judged(held_out_);
@@ -150,7 +150,10 @@ public:
       nats[static_cast<Eigen::Index>(i)] =
           static_cast<double>(segments.size()) * sum / std::max(signals, 1.0);
     });
-    const double unheard = nats.minCoeff() + static_cast<double>(segments.size()) * std::log(somewhat_worse);
+    double best = nats[0];
+    for (std::size_t i = 1; i < candidates.size(); ++i)
+      if (!candidates[i].explanation.has_curve()) best = std::min(best, nats[static_cast<Eigen::Index>(i)]);
+    const double unheard = best + static_cast<double>(segments.size()) * std::log(somewhat_worse);
     return (nats.array() - unheard).max(0.0);
   }
 

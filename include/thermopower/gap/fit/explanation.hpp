@@ -99,6 +99,12 @@ struct Explanation {
     return sum;
   }
 
+  /// Whether one of its effects is a curve.
+  bool has_curve() const {
+    return std::any_of(effects.begin(), effects.end(),
+                       [](const CatalogueEntry* one) { return one->info.curve.has_value(); });
+  }
+
   /// Whether sides meet and part in one of its effects (EffectInfo::strikes).
   bool strikes() const {
     return std::any_of(effects.begin(), effects.end(),

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -143,7 +144,12 @@ private:
     }
     for (UnitVerdict& unit : result_.units)
       std::stable_sort(unit.logs.begin(), unit.logs.end(),
-                       [&](std::size_t a, std::size_t b) { return logs_[a].time < logs_[b].time; });
+                       [&](std::size_t a, std::size_t b) { return moment(logs_[a]) < moment(logs_[b]); });
+  }
+
+  /// When a log was recorded; one that nobody dated comes last.
+  static double moment(const LogResult& log) {
+    return std::isnan(log.time) ? std::numeric_limits<double>::infinity() : log.time;
   }
 
   /// The likely explanations of one log.
