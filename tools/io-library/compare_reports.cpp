@@ -5,6 +5,7 @@
 
 #include "html_text.hpp"
 #include "json_place.hpp"
+#include "report_format.hpp"
 
 #include <thermopower/gap/verdict.hpp>
 #include <thermopower/io/input_error.hpp>
@@ -30,8 +31,6 @@ using Json = nlohmann::ordered_json;
 constexpr double interval_width = 3.92;
 // Two values that are further apart than that many standard deviations of their difference differ.
 constexpr double they_differ = 2.0;
-
-constexpr const char* report_format = "thermopower-gap-report/1";
 
 // What a comparison reads of a report, with an error that names the file, the line and the place.
 class ReportShape {

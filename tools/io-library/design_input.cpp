@@ -8,6 +8,7 @@
 
 #include "file_source.hpp"
 #include "json_place.hpp"
+#include "report_format.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -27,7 +28,6 @@ using gap::design::Limits;
 using gap::design::VariedInput;
 
 constexpr const char* limits_format = "thermopower-limits/1";
-constexpr const char* report_format = "thermopower-gap-report/1";
 
 // A JSON text, and errors that name its file, field and line.
 class JsonText {

@@ -9,6 +9,7 @@
 #include "file_source.hpp"
 #include "json_place.hpp"
 #include "nearest_name.hpp"
+#include "report_format.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -71,7 +72,7 @@ public:
                    format_id + "\"");
     if (!root.contains("format")) fail("/format", std::string("is missing; expected \"") + format_id + "\"");
     if (!root["format"].is_string() || root["format"].get<std::string>() != format_id) {
-      const bool is_report = root["format"] == "thermopower-gap-report/1";
+      const bool is_report = root["format"] == report_format;
       fail("/format", "is " + shown(root["format"]) + "; expected \"" + format_id + "\"" +
                           (is_report ? ", which 'diagnose --augmented' writes" : ""));
     }

@@ -3,6 +3,8 @@
 
 #include <thermopower/io/report_json.hpp>
 
+#include "report_format.hpp"
+
 #include <thermopower/io/model_file.hpp>
 #include <thermopower/io/sentences.hpp>
 
@@ -163,7 +165,7 @@ namespace {
 
 Json report(const Diagnosis& diagnosis, const std::vector<EffectInfo>& effects, const Provenance& made_of) {
   Json root;
-  root["format"] = "thermopower-gap-report/1";
+  root["format"] = report_format;
   root["verdict"] = to_string(diagnosis.verdict);
   root["where"] = Json::array();
   for (const auto& where : diagnosis.where) root["where"].push_back(location(where));
