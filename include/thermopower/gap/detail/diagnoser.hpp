@@ -136,9 +136,10 @@ private:
     Attempt attempt = posed();
     EffortLead lead(*effort_, attempt.problem);
     if (!lead.is_told()) return std::nullopt;
-    lead.weigh_with(AsJudged(posing_, train_inputs_, held_out_inputs_).lost_in_motion(lead.candidates()));
+    const AsJudged as_judged(posing_, train_inputs_, held_out_inputs_);
+    lead.weigh_with(as_judged.lost_in_motion(lead.candidates()));
     const Answer answer = lead.answer(effort_->told());
-    if (answer.chosen == 0) return std::nullopt;
+    if (answer.chosen == 0 || as_judged.opens_the_gap(lead.candidates()[answer.chosen])) return std::nullopt;
     effort_leads_ = true;
     take(lead, answer, attempt);
     return std::make_pair(std::move(attempt), answer);
