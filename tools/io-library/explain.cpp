@@ -33,9 +33,7 @@ CodePage page_of(const std::string& code, const char* kind, const std::vector<st
 
 std::string sentence(const std::string& text) {
   if (text.empty()) return text;
-  // An id stays as it is spelt.
-  const std::string first = text.substr(0, text.find(' '));
-  const std::string begun = first.find('_') == std::string::npos ? capital(text) : text;
+  const std::string begun = capital(text);
   return begun.back() == '.' ? begun : begun + ".";
 }
 

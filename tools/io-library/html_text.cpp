@@ -174,7 +174,15 @@ std::string axis_label(const VariableText& variable) {
 }
 
 std::string capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  // A name with an underscore stays as it is spelt.
+  const bool is_name = text.substr(0, text.find(' ')).find('_') != std::string::npos;
+  if (!is_name && !text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string ended(std::string text) {
+  if (text.empty() || (text.back() != '.' && text.back() != '?')) text += '.';
   return text;
 }
 

@@ -69,6 +69,8 @@ std::string axis_label(const VariableText& variable);
 
 /// @brief The first letter in upper case, where it is a letter of ASCII.
 std::string capital(std::string text);
+/// @brief The text with a full stop behind it, where it ends with none and with no question mark.
+std::string ended(std::string text);
 
 /// @brief Ids with something in between.
 std::string joined(const std::vector<std::string>& ids, const char* between = " + ");

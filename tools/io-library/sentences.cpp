@@ -300,9 +300,8 @@ std::vector<std::string> sentences(const Diagnosis& diagnosis, const std::vector
       break;
     case Verdict::insufficient:
       if (const Finding* const one = deciding(diagnosis.findings))
-        add(capital(one->column.empty() ? one->message : one->column + " " + one->message) + ".");
-      else if (!diagnosis.reason.empty())
-        add(capital(diagnosis.reason) + (diagnosis.reason.back() == '.' ? "" : "."));
+        add(ended(capital(one->column.empty() ? one->message : one->column + " " + one->message)));
+      else if (!diagnosis.reason.empty()) add(ended(capital(diagnosis.reason)));
       break;
   }
   return list;

@@ -221,7 +221,7 @@ std::string findings_text(const std::vector<Finding>& findings, Severity least) 
     std::string text = finding.recording + (finding.column.empty() ? "" : ", column " + finding.column) +
                        ": " + finding.message;
     if (finding.action != FindingAction::none) text += std::string(" [") + to_string(finding.action) + "]";
-    if (!finding.mend.empty()) text += ". To mend it: " + finding.mend;
+    if (!finding.mend.empty()) text = ended(text) + " To mend it: " + finding.mend;
     out += line(finding.severity == Severity::note ? "note" : "data", text);
     counts_rows = counts_rows || !finding.rows.empty();
   }
