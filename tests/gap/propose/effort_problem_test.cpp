@@ -100,6 +100,12 @@ struct Posed {
     for (const char* id : ids) set.push_back(standard_catalogue().find(id));
     return problem.score(set);
   }
+  EffortLead lead() {
+    FitProblem fit;
+    fit.model = &model;
+    fit.catalogue = &standard_catalogue();
+    return EffortLead(problem, fit);
+  }
   std::string told() {
     std::string ids;
     for (const auto* effect : problem.told().effects) ids += (ids.empty() ? "" : " + ") + effect->info.id;
@@ -228,10 +234,7 @@ TEST_CASE("what makes the motion far worse is not the answer, however well it ne
   Motion motion;
   motion.extra_Nm = [](double, double rate) { return rate > 0.0 ? 0.08 : -0.08; };
   Posed posed(model_of(motion), motion);
-  FitProblem fit;
-  fit.model = &posed.model;
-  fit.catalogue = &standard_catalogue();
-  EffortLead lead(posed.problem, fit);
+  EffortLead lead = posed.lead();
   REQUIRE(lead.is_told());
   const auto chosen = [&] {
     return lead.candidates()[lead.answer(posed.problem.told()).chosen].explanation.ids(posed.model);
@@ -253,10 +256,7 @@ TEST_CASE("where a dead band does what dry friction does, the friction is the li
   motion.inertia_kgm2 = 1e-6;  // effort and motion have one sign, and so the two are the same
   motion.extra_Nm = [](double, double rate) { return rate > 0.0 ? 0.08 : -0.08; };
   Posed posed(model_of(motion), motion);
-  FitProblem fit;
-  fit.model = &posed.model;
-  fit.catalogue = &standard_catalogue();
-  EffortLead lead(posed.problem, fit);
+  EffortLead lead = posed.lead();
   const auto probability = [&](const char* id) {
     for (const Candidate& one : lead.candidates())
       if (one.explanation.ids(posed.model) == std::vector<std::string>{id}) return one.probability;

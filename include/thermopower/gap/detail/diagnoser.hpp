@@ -189,6 +189,8 @@ private:
     };
     const std::size_t best = likeliest(candidates);
     bool denied_best = false;
+    Explanation told;
+    told.effects = effort_->told().effects;
     double left = 0.0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       Candidate& one = candidates[i];
@@ -198,8 +200,7 @@ private:
         const ParameterPoint point = point_of(model_, one.explanation, one.list, one.fit.point);
         const bool needs_another =
             !reaches_the_floor && effort_->times_refitted(point.factors, added(point)) > worse;
-        const bool may_lose =
-            !reaches_the_floor || has_curve(one.explanation.effects) || !has_curve(effort_->told().effects);
+        const bool may_lose = !reaches_the_floor || one.explanation.has_curve() || !told.has_curve();
         if (needs_another || (may_lose && has_no_use(one.explanation))) {
           one.probability = 0.0;
           denied_best = denied_best || i == best;
@@ -210,11 +211,6 @@ private:
     if (left > 0.0)
       for (Candidate& one : candidates) one.probability /= left;
     return denied_best;
-  }
-
-  static bool has_curve(const std::vector<const CatalogueEntry*>& effects) {
-    return std::any_of(effects.begin(), effects.end(),
-                       [](const CatalogueEntry* one) { return one->info.curve.has_value(); });
   }
 
   static std::vector<plant::AddedEffect<double>> added(const ParameterPoint& point) {

@@ -122,9 +122,7 @@ public:
   }
   /// The residual of held-out effort with the model as configured, A or V.
   Eigen::VectorXd held_out_residual_as_configured() const {
-    EffortPoint point;
-    for (const CalibratedConstant& one : model_.calibrated()) point.factors.push_back(one.unmoved());
-    return held_->evaluate(point, {}).effort;
+    return held_->evaluate(unmoved_point(model_), {}).effort;
   }
   /// How far constants and effects that were fitted to the motion are from the recorded effort. It is their residual of
   /// held-out effort, over that of refitted constants without effects. Where no motion tells an effect, it is left out of
@@ -345,10 +343,8 @@ private:
       if (result.score.refusal == InverseRefusal::none) result.score.refusal = why_not(*one);
     if (result.score.refusal != InverseRefusal::none) return result;
     const EffortFitter fitter(*train_, samples_as_one_);
-    EffortPoint start;
     if (effects.empty()) {
-      for (const CalibratedConstant& one : model_.calibrated()) start.factors.push_back(one.unmoved());
-      result.fit = fitter.fit(start, coordinates({}), true);
+      result.fit = fitter.fit(unmoved_point(model_), coordinates({}), true);
       samples_as_one_ = correlation(result.fit.residual);
     } else {
       const std::vector<const plant::CatalogueEntry*> fewer(effects.begin(), effects.end() - 1);
@@ -358,8 +354,7 @@ private:
         result.score.refusal = base.score.refusal;
         return result;
       }
-      start = base.fit.point;
-      result.fit = with_one_more(fitter, start, base.fit.residual, effects);
+      result.fit = with_one_more(fitter, base.fit.point, base.fit.residual, effects);
     }
     if (!result.fit.found) {
       result.score.refusal = InverseRefusal::too_few_rows;

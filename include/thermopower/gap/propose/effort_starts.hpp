@@ -101,13 +101,19 @@ inline std::vector<BoundedCoordinate> constants_of(const Model& model, const Cat
   return list;
 }
 
+/// The model as configured.
+inline EffortPoint unmoved_point(const Model& model) {
+  EffortPoint point;
+  for (const CalibratedConstant& one : model.calibrated()) point.factors.push_back(one.unmoved());
+  return point;
+}
+
 /// Lets an inertia fall no further than to what a 500th of the effort needs. Less is not seen, and next to none moves at once.
 inline void bound_inertia(const Model& model, const EffortResidual& data,
                           std::vector<BoundedCoordinate>& constants) {
   constexpr double seen = 0.002;  // of the effort's RMS
-  EffortPoint point;
+  const EffortPoint point = unmoved_point(model);
   const std::vector<CalibratedConstant> all = model.calibrated();
-  for (const CalibratedConstant& one : all) point.factors.push_back(one.unmoved());
   for (BoundedCoordinate& one : constants) {
     if (all[one.at.constant].id != "inertia") continue;
     const Eigen::MatrixXd by = data.evaluate(point, {one.at}).jacobian;
