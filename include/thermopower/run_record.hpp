@@ -30,6 +30,18 @@
 /// Any other line is ignored, so a program may print beside it.
 
 namespace thermopower {
+
+/// Where a replayed answer first differs from the recorded one.
+/// @ingroup control
+struct RunDifference {
+  uint32_t step;  ///< Number of the step, from 1 at the first that was compared; 0: no answer differs.
+  uint16_t
+      field;  ///< Number of the field in `Answered`, from 1, as `each_field` names them; each element of an array counts.
+  bool is_float;      ///< The field is a float: `recorded` and `replayed` are its bits, IEEE 754 binary32.
+  uint32_t recorded;  ///< What the recording holds.
+  uint32_t replayed;  ///< What this machine answers.
+};
+
 namespace detail {
 
 /// The first letter of a line, "P": the firmware begins.
@@ -92,7 +104,7 @@ public:
     uint32_t bits, other;
     memcpy(&bits, &value, sizeof bits);
     memcpy(&other, &said, sizeof other);
-    if (bits == other) return;
+    if (!differs(other, bits, true)) return;
     // Of one sign the bits of numbers order as the numbers do.
     const bool is_one_sign = ((bits ^ other) >> 31) == 0;
     const uint32_t apart = bits > other ? bits - other : other - bits;
@@ -105,15 +117,26 @@ public:
 
   uint32_t most_units = 0;  ///< Of a float, in units in the last place.
   bool is_decision_other = false;
+  RunDifference first = RunDifference();  ///< Without its step; field 0: none differs.
 
 private:
   template <class Number>
   void whole(const Number& value) noexcept {
     Number said;
     recorded_.number(said);
-    is_decision_other = is_decision_other || said != value;
+    if (differs(said, value, false)) is_decision_other = true;
+  }
+  bool differs(uint32_t recorded, uint32_t replayed, bool is_float) noexcept {
+    ++field_;
+    if (recorded == replayed) return false;
+    if (first.field == 0) {
+      const RunDifference found = {0, field_, is_float, recorded, replayed};
+      first = found;
+    }
+    return true;
   }
   FieldReader recorded_;
+  uint16_t field_ = 0;
 };
 
 }  // namespace detail
@@ -166,10 +189,10 @@ struct RunReplayed {
   uint32_t different;        ///< Steps of these whose answer differs in a bit.
   uint32_t decisions_other;  ///< Steps of these in which a whole number differs.
   uint32_t most_units;       ///< Of the floats that differ: the most, in units in the last place.
-  uint32_t first_different;  ///< Number of the first step that differs, from 1; 0: none does.
   uint32_t damaged;          ///< Lines with a wrong check sum or length.
   uint32_t lost;             ///< Times that the numbers of two steps do not follow each other.
   bool is_other_layout;      ///< The recording is of another firmware: its fields are of other kinds.
+  RunDifference first;       ///< The first field of an answer that differs.
 
   /// Steps were compared, none differs, and no line is missing.
   bool is_identical() const noexcept {
@@ -276,8 +299,10 @@ private:
     ++result_.steps;
     if (comparison.is_decision_other) ++result_.decisions_other;
     if (comparison.most_units > result_.most_units) result_.most_units = comparison.most_units;
-    if (!comparison.is_decision_other && comparison.most_units == 0) return;
-    if (result_.different++ == 0) result_.first_different = result_.steps;
+    if (comparison.first.field == 0) return;
+    if (result_.different++ != 0) return;
+    result_.first = comparison.first;
+    result_.first.step = result_.steps;
   }
 
   template <class Fields>

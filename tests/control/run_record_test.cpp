@@ -108,15 +108,21 @@ TEST_CASE("a line is the bytes that the page says") {
   CHECK(line.size() == 3 + 4 + 8 + 2 + 16 + 4 + 1);
 }
 
-TEST_CASE("an answer that differs is told from a decision that does, and the first of them is named") {
+TEST_CASE("an answer that differs is told from a decision that does, and the first field of them is named") {
   const tp::RunReplayed last_bit = replay<Summing<1>>(recorded(20));
   CHECK_FALSE(last_bit.is_identical());
   CHECK(last_bit.different == 20);
   CHECK(last_bit.decisions_other == 0);
   CHECK(last_bit.most_units == 1);
-  CHECK(last_bit.first_different == 1);
+  CHECK(last_bit.first.step == 1);
+  CHECK(last_bit.first.field == 2);
+  CHECK(last_bit.first.is_float);
+  CHECK(last_bit.first.replayed == last_bit.first.recorded + 1);
   const tp::RunReplayed decision = replay<Summing<2>>(recorded(20));
   CHECK(decision.decisions_other == 20);
+  CHECK(decision.first.field == 1);
+  CHECK_FALSE(decision.first.is_float);
+  CHECK(replay<Firmware>(recorded(20)).first.step == 0);
 }
 
 TEST_CASE("a line that is damaged or missing ends the comparison until the firmware starts again") {

@@ -17,12 +17,13 @@ int main() {
         static_cast<char>(thermopower::detail::read_flash(reinterpret_cast<const uint8_t*>(recording) + at)));
   const thermopower::RunReplayed& result = replay.result();
   on_target::Report report;
-  report.section("steps, different, other decisions, units, first different, damaged, lost");
+  report.section("steps, different, other decisions, units, first different, its field, damaged, lost");
   report.integer(static_cast<int32_t>(result.steps));
   report.integer(static_cast<int32_t>(result.different));
   report.integer(static_cast<int32_t>(result.decisions_other));
   report.integer(static_cast<int32_t>(result.most_units));
-  report.integer(static_cast<int32_t>(result.first_different));
+  report.integer(static_cast<int32_t>(result.first.step));
+  report.integer(static_cast<int32_t>(result.first.field));
   report.integer(static_cast<int32_t>(result.damaged));
   report.integer(static_cast<int32_t>(result.lost));
   const bool is_whole =

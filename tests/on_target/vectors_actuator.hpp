@@ -10,12 +10,12 @@
 /// and sqrt may cost.
 namespace on_target {
 
-template <class Motor>
-void run_current(Report& report) {
-  const typename Motor::Current model(Motor::current());
+template <class Current>
+void run_current(Report& report, const typename Current::Config& config) {
+  const Current model(config);
   for (uint8_t power = 0; power < 250; power = static_cast<uint8_t>(power + 7)) {
     for (int16_t motor_C = -20; motor_C <= 80; motor_C = static_cast<int16_t>(motor_C + 25)) {
-      const typename Motor::Current::State drawn =
+      const typename Current::State drawn =
           model.at_power(static_cast<float>(power), 13.0f, static_cast<float>(motor_C));
       report.real(drawn.v_rms_V, 2e-6f);
       report.real(drawn.current_A, 5e-6f);
@@ -56,29 +56,47 @@ void run_thermal(Report& report, const typename Thermal::Config& config, float b
   }
 }
 
+template <class Motor>
+void run_current(Report& report) {
+  run_current<typename Motor::Current>(report, Motor::current());
+}
+
+// A section for each law, so that bits.sh says which answers alike on every machine.
 inline void run_actuator(Report& report) {
   namespace tp = thermopower;
   namespace motors = thermopower::motors;
-  report.section("current, 2606 and 5208, corrected and as programmed");
+  report.section("`OhmicCurrent`");
+  const tp::OhmicCurrent<> copper = {8.7f, 0.00393f, 20.0f};
+  run_current<tp::CurrentModel<tp::OhmicCurrent<> > >(report, copper);
+  report.section("`ThesisCurrent`");
   run_current<motors::Bgm2606_90t>(report);
   run_current<motors::Bgm2606_90t::AsProgrammed>(report);
   run_current<motors::Bgm5208_200_12>(report);
   run_current<motors::Bgm5208_200_12::AsProgrammed>(report);
-  report.section("heating coefficient");
+  report.section("`ThesisHeating`");
   run_heating<motors::Bgm2606_90t>(report);
   run_heating<motors::Bgm2606_90t::AsProgrammed>(report);
   run_heating<motors::Bgm5208_200_12>(report);
   run_heating<motors::Bgm5208_200_12::AsProgrammed>(report);
-  report.section("cooling");
+  report.section("`NewtonCooling`, `RateCooling`");
   const tp::NewtonCooling<> newton = {0.05f};
   run_cooling(report, newton);
   run_cooling(report, tp::RateCooling<>::per_minute(0.11f));
-  report.section("thermal models: Euler, tangent, exact, two nodes");
+  report.section("`RadiationCooling`");
+  const tp::RadiationCooling<> black = {0.01f, 0.9f};
+  run_cooling(report, black);
+  report.section("`NaturalConvection`");
+  const tp::NaturalConvection<> plate = {0.05f, 0.25f, 20.0f};
+  run_cooling(report, plate);
+  report.section("`EulerStep`");
   run_thermal<motors::Bgm2606_90t::AsProgrammed::Thermal>(
       report, motors::Bgm2606_90t::AsProgrammed::thermal(), 2e-4f);
+  report.section("`LinearizedStep`");
   run_thermal<motors::Bgm5208_200_12::Thermal>(report, motors::Bgm5208_200_12::thermal(), 2e-4f);
+  report.section("`ExactStep`");
   const tp::ThermalModel<>::Config exact = {{30.0f}, {0.05f}};
   run_thermal<tp::ThermalModel<> >(report, exact, 2e-4f);
+  report.section("`TwoNodeThermalModel`");
   const tp::TwoNodeThermalModel<>::Config two = {6.0f, 40.0f, 0.4f, {0.05f}};
   run_thermal<tp::TwoNodeThermalModel<> >(report, two, 2e-4f);
 }

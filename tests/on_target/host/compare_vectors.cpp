@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// compare_vectors <reference program> <command to run on the target...>: integers must be identical, numbers
-// within the reference's bounds. Exit status 0 when they are.
+// compare_vectors [--bits] <reference program> <command to run on the target...>: integers must be identical, numbers within the
+// reference's bounds. Exit status 0 when they are. With --bits it prints instead, for each section: how many values it has, how many
+// of them differ in a bit, and by how much at most, in millionths of the section's largest number. bits.sh makes a table of that.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -37,11 +39,46 @@ float number(const std::string& hex) {
   return value;
 }
 
+void print_bits(const std::vector<std::string>& expected, const std::vector<std::string>& found) {
+  std::string section;
+  long values = 0, different = 0;
+  double largest = 0, farthest = 0;
+  const auto print = [&] {
+    if (values != 0)
+      std::cout << section << '\t' << values << '\t' << different << '\t'
+                << (farthest > 0 ? 1e6 * farthest / largest : 0.0) << '\n';
+    values = different = 0;
+    largest = farthest = 0;
+  };
+  for (std::size_t index = 0; index < expected.size() && index < found.size(); ++index) {
+    if (expected[index][0] == '#') {
+      print();
+      section = expected[index].substr(2);
+      continue;
+    }
+    ++values;
+    const bool is_float = expected[index][0] == 'f';
+    const std::string want = is_float ? expected[index].substr(2, 8) : expected[index],
+                      have = is_float ? found[index].substr(2, 8) : found[index];
+    if (want != have) ++different;
+    if (!is_float || std::isnan(number(want))) continue;
+    largest = std::max(largest, std::fabs(static_cast<double>(number(want))));
+    farthest =
+        std::max(farthest, std::fabs(static_cast<double>(number(want)) - static_cast<double>(number(have))));
+  }
+  print();
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
+  const bool is_bits_asked = count > 1 && std::strcmp(arguments[1], "--bits") == 0;
+  if (is_bits_asked) {
+    --count;
+    ++arguments;
+  }
   if (count < 3) {
-    std::cerr << "usage: compare_vectors <reference program> <command to run on the target...>\n";
+    std::cerr << "usage: compare_vectors [--bits] <reference program> <command to run on the target...>\n";
     return 2;
   }
   std::string target;
@@ -57,6 +94,10 @@ int main(int count, char** arguments) {
     return 1;
   }
 
+  if (is_bits_asked) {
+    print_bits(expected, found);
+    return 0;
+  }
   std::string section;
   long integers = 0, numbers = 0, wrong = 0;
   double fullest = 0;
