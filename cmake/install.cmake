@@ -24,7 +24,7 @@ if(THERMOPOWER_DESKTOP)
   install(FILES include/thermopower/desktop.hpp include/thermopower/gap.hpp include/thermopower/io.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers)
   # Not robot/: its library is a part of the program alone.
-  install(DIRECTORY include/thermopower/gap include/thermopower/io include/thermopower/plant include/thermopower/simulation
+  install(DIRECTORY include/thermopower/design include/thermopower/gap include/thermopower/io include/thermopower/plant include/thermopower/simulation
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers FILES_MATCHING PATTERN "*.hpp")
 endif()
 # thermopower_install_library(<target> <component>): the library, and what find_package() tells of it.

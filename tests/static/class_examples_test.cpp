@@ -84,7 +84,7 @@ const fs::path root = THERMOPOWER_ROOT;
 /// Model, simulate() and diagnose() lead to them; their pages link to how the whole works.
 bool is_a_stage(const std::string& header) {
   static const std::regex stages(
-      "^gap/(data|localise|propose|fit|decide|compare|design|report|detail)/|^robot/|^plant/(axis_at_rows|axis_effort|axis_step|balance|bench_at_rows|body_network)\\.hpp$");
+      "^gap/(data|localise|propose|fit|decide|compare|report|detail)/|^(design|robot)/|^plant/(axis_at_rows|axis_effort|axis_step|balance|bench_at_rows|body_network)\\.hpp$");
   return std::regex_search(header, stages);
 }
 

@@ -3,7 +3,7 @@
 
 # cmake -DFORM=<form> -DINCLUDE=<include> -DWORK=<directory> -P headers.cmake -- <compiler> <flags...>: compiles the firmware headers.
 file(GLOB_RECURSE headers RELATIVE ${INCLUDE} ${INCLUDE}/thermopower/*.hpp)
-list(FILTER headers EXCLUDE REGEX "^thermopower/(simulation/|plant/|gap/|io/|robot/|desktop\\.hpp|gap\\.hpp|io\\.hpp)")
+list(FILTER headers EXCLUDE REGEX "^thermopower/(simulation/|plant/|gap/|design/|io/|robot/|desktop\\.hpp|gap\\.hpp|io\\.hpp)")
 list(LENGTH headers count)
 if(count LESS 50)
   message(FATAL_ERROR "only ${count} firmware headers below ${INCLUDE}: is the path right?")

@@ -10,6 +10,7 @@
 
 #include <string>
 
+namespace design = thermopower::design;
 namespace gap = thermopower::gap;
 namespace io = thermopower::io;
 
@@ -67,7 +68,7 @@ gap::Diagnosis diagnosis() {
 }  // namespace
 
 TEST_CASE("Limits are read as they are written") {
-  const gap::design::Limits limits = io::parse_limits("limits.json", good);
+  const design::Limits limits = io::parse_limits("limits.json", good);
   CHECK(limits.duration_s == 20.0);
   REQUIRE(limits.vary.size() == 2);
   CHECK(limits.vary[0].slope_per_s == 50.0);
@@ -137,8 +138,8 @@ TEST_CASE("What is no report, or an old one, is refused with what to do") {
 }
 
 TEST_CASE("The header of a schedule holds the schedule to half of its unit") {
-  gap::design::Limits limits = io::parse_limits("limits.json", good);
-  gap::design::Design design;
+  design::Limits limits = io::parse_limits("limits.json", good);
+  design::Design design;
   design.schedule.t_s = Eigen::Vector3d(0.0, 0.01, 0.02);
   design.schedule.set("drive_A", Eigen::Vector3d(-0.5, 0.25, 0.0));
   design.schedule.set("motor_C", Eigen::Vector3d(40.0, 40.0, 40.0));

@@ -23,9 +23,9 @@ namespace thermopower::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using gap::design::Bounds;
-using gap::design::Limits;
-using gap::design::VariedInput;
+using design::Bounds;
+using design::Limits;
+using design::VariedInput;
 
 constexpr const char* limits_format = "thermopower-limits/1";
 
@@ -225,14 +225,14 @@ Limits read_limits(const std::string& path) {
   return parse_limits(path, whole_file(path, "a file of limits (JSON)"));
 }
 
-gap::design::DiagnosedGap parse_report(const std::string& name, const std::string& text,
-                                       const Catalogue& catalogue) {
+design::DiagnosedGap parse_report(const std::string& name, const std::string& text,
+                                  const Catalogue& catalogue) {
   const JsonText file(name, text, report_format);
   file.expect_format(report_format);
   const Json& root = file.root();
   if (!root.contains("model"))
     file.fail("/model", "is missing; expected a report of this version: run diagnose --report again");
-  gap::design::DiagnosedGap gap;
+  design::DiagnosedGap gap;
   gap.model = parse_model(name + ": /model", root["model"].dump(1), catalogue);
   try {
     const auto verdict = verdict_of(root.at("verdict").get<std::string>());
@@ -257,7 +257,7 @@ gap::design::DiagnosedGap parse_report(const std::string& name, const std::strin
   return gap;
 }
 
-gap::design::DiagnosedGap read_report(const std::string& path, const Catalogue& catalogue) {
+design::DiagnosedGap read_report(const std::string& path, const Catalogue& catalogue) {
   return parse_report(path, whole_file(path, "a report (JSON)"), catalogue);
 }
 

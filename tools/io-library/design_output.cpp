@@ -18,11 +18,11 @@
 namespace thermopower::io {
 namespace {
 
-using gap::design::Design;
-using gap::design::Ending;
-using gap::design::ExplanationClass;
-using gap::design::Limits;
-using gap::design::VariedInput;
+using design::Design;
+using design::Ending;
+using design::ExplanationClass;
+using design::Limits;
+using design::VariedInput;
 
 std::string number(double value, int digits) {
   char text[40];
@@ -122,7 +122,7 @@ std::string design_summary(const Design& design, const Limits& limits) {
   out += summary_line("", design.sentence);
   for (const ExplanationClass& one : design.classes)
     out += summary_line(&one == &design.classes.front() ? "classes" : "",
-                        gap::design::two_digits(one.probability) + "  " + one.name());
+                        design::two_digits(one.probability) + "  " + one.name());
   if (design.ending == Ending::schedule)
     for (const VariedInput& input : limits.vary)
       if (input.once)
@@ -142,8 +142,8 @@ std::string design_html(const Design& design, const Limits& limits, const std::s
       escaped(design.sentence) + "</p>\n";
   out += "<table><tr><th class=\"t\">class</th><th>probability so far</th></tr>\n";
   for (const ExplanationClass& one : design.classes)
-    out += "<tr><td class=\"t\">" + escaped(one.name()) + "</td><td>" +
-           gap::design::two_digits(one.probability) + "</td></tr>\n";
+    out += "<tr><td class=\"t\">" + escaped(one.name()) + "</td><td>" + design::two_digits(one.probability) +
+           "</td></tr>\n";
   out += "</table>\n";
   if (design.ending == Ending::schedule) {
     out += "<h2>What is played</h2>\n";

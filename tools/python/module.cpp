@@ -12,7 +12,7 @@
 
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
-#include <thermopower/gap/design/design.hpp>
+#include <thermopower/design/design.hpp>
 #include <thermopower/io.hpp>
 #include <thermopower/io/design_files.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
@@ -38,6 +38,7 @@
 #include <vector>
 
 namespace py = pybind11;
+namespace design = thermopower::design;
 namespace gap = thermopower::gap;
 namespace plant = thermopower::plant;
 namespace io = thermopower::io;
@@ -124,12 +125,12 @@ using DesignTexts = std::tuple<std::string, std::string, std::string, std::strin
 DesignTexts designed(const std::string& report, const std::string& limits, unsigned seed,
                      const gap::Catalogue& catalogue) {
   const py::gil_scoped_release released;
-  const gap::design::DiagnosedGap diagnosed = io::parse_report("report", report, catalogue);
-  const gap::design::Limits within = io::parse_limits("limits", limits);
-  gap::design::DesignOptions options;
+  const design::DiagnosedGap diagnosed = io::parse_report("report", report, catalogue);
+  const design::Limits within = io::parse_limits("limits", limits);
+  design::DesignOptions options;
   options.seed = seed;
-  const gap::design::Design design = gap::design::design_experiment(diagnosed, within, options, catalogue);
-  const bool has_schedule = design.ending == gap::design::Ending::schedule;
+  const design::Design design = design::design_experiment(diagnosed, within, options, catalogue);
+  const bool has_schedule = design.ending == design::Ending::schedule;
   return {to_string(design.ending), io::design_summary(design, within),
           has_schedule ? io::schedule_csv(design) : std::string(),
           has_schedule ? io::schedule_header(design, within) : std::string(),

@@ -6,7 +6,7 @@
 #include "program.hpp"
 #include "progress.hpp"
 
-#include <thermopower/gap/design/design.hpp>
+#include <thermopower/design/design.hpp>
 #include <thermopower/io.hpp>
 #include <thermopower/io/design_files.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
@@ -17,6 +17,7 @@
 #include <string>
 #include <system_error>
 
+namespace design = thermopower::design;
 namespace gap = thermopower::gap;
 namespace io = thermopower::io;
 
@@ -32,29 +33,29 @@ int run_design(const DesignArguments& asked) {
   io::OutputFiles outputs;
   for (const std::string* path : {&asked.out, &asked.c_array, &asked.html})
     if (!path->empty()) outputs.expect(*path);
-  gap::design::Design design;
-  gap::design::Limits limits;
+  design::Design design;
+  design::Limits limits;
   {
     Progress progress;
     progress.stage("reading");
-    const gap::design::DiagnosedGap diagnosed = io::read_report(asked.report, catalogue);
+    const design::DiagnosedGap diagnosed = io::read_report(asked.report, catalogue);
     limits = io::read_limits(asked.limits);
     progress.stage("designing");
-    gap::design::DesignOptions options;
+    design::DesignOptions options;
     options.seed = asked.seed;
     try {
-      design = gap::design::design_experiment(diagnosed, limits, options, catalogue);
+      design = design::design_experiment(diagnosed, limits, options, catalogue);
     } catch (const gap::InvalidInput& error) {
       const std::string what = error.what(), of_limits = "limits: ";
       if (what.compare(0, of_limits.size(), of_limits) != 0) throw io::InputError(asked.report + ": " + what);
       throw io::InputError(asked.limits + ": " + what.substr(of_limits.size()));
     }
-    if (design.ending == gap::design::Ending::schedule) {
+    if (design.ending == design::Ending::schedule) {
       outputs.put(asked.out, io::schedule_csv(design));
       if (!asked.c_array.empty()) outputs.put(asked.c_array, io::schedule_header(design, limits));
     }
     // An older schedule under that name would be taken for the answer.
-    if (design.ending != gap::design::Ending::schedule)
+    if (design.ending != design::Ending::schedule)
       for (const std::string& path : {asked.out, asked.c_array})
         if (std::error_code ignored; path != "-" && std::filesystem::is_regular_file(path, ignored))
           std::filesystem::remove(path, ignored);
@@ -64,8 +65,7 @@ int run_design(const DesignArguments& asked) {
   const bool taken = asked.out == "-" || asked.c_array == "-" || asked.html == "-";
   std::fputs(io::design_summary(design, limits).c_str(), taken ? stderr : stdout);
   // Scripts go by it: with `made` there is a schedule, or none is needed.
-  const bool helped =
-      design.ending == gap::design::Ending::schedule || design.ending == gap::design::Ending::enough;
+  const bool helped = design.ending == design::Ending::schedule || design.ending == design::Ending::enough;
   return helped ? made : too_little_data;
 }
 

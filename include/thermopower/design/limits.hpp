@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// An input that an experiment may vary.
 ///
@@ -154,4 +154,4 @@ private:
   }
 };
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

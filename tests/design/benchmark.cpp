@@ -5,15 +5,15 @@
 // record, diagnose, design, play the schedule on the plant, diagnose again. The same with other experiments in the place of the
 // designed one, within the same limits.
 //
-//     gap_design_benchmark [--cases N] [--seed S] [--contenders designed,random,chirp,fixed,fisher] [--violations N]
+//     design_benchmark [--cases N] [--seed S] [--contenders designed,random,chirp,fixed,fisher] [--violations N]
 //
 // A case counts where the first recording leaves more than one explanation. It is resolved where an explanation has 0.9 or more
 // after one or two experiments: rightly where that is the hidden cause, of a cause outside of the catalogue where nothing but curves is named.
 
-#include "../../gap_benchmark/axis_draw.hpp"
-#include "../../gap_benchmark/bench_draw.hpp"
+#include "../gap_benchmark/axis_draw.hpp"
+#include "../gap_benchmark/bench_draw.hpp"
 
-#include <thermopower/gap/design/design.hpp>
+#include <thermopower/design/design.hpp>
 #include <thermopower/gap/diagnose.hpp>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ namespace {
 
 namespace plants = gap_benchmark;
 using namespace thermopower::gap;
-using namespace thermopower::gap::design;
+using namespace thermopower::design;
 
 constexpr double named = 0.9;  // probability from which on an explanation is an answer
 constexpr int most_experiments = 2;
@@ -331,7 +331,7 @@ int main(int count, char** values) {
     else if (!std::strcmp(values[i], "--contenders")) list = values[i + 1];
     else if (!std::strcmp(values[i], "--violations")) violations = std::atoi(values[i + 1]);
     else {
-      std::fprintf(stderr, "gap_design_benchmark: unknown option %s\n", values[i]);
+      std::fprintf(stderr, "design_benchmark: unknown option %s\n", values[i]);
       return 2;
     }
   }

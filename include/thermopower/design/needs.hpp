@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/limits.hpp>
-#include <thermopower/gap/design/remaining.hpp>
+#include <thermopower/design/limits.hpp>
+#include <thermopower/design/remaining.hpp>
 
 #include <cassert>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// Which input the limits lack for a model, in a sentence that names the field; nothing where all are there.
 inline std::optional<std::string> lacking_for(const DiagnosedGap& gap, const Limits& limits) {
@@ -99,4 +99,4 @@ inline std::vector<RaisedLimit> raised_limits(const Limits& limits) {
   return all;
 }
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <thermopower/gap/data/inputs.hpp>
-#include <thermopower/gap/design/diagnosed.hpp>
-#include <thermopower/gap/design/limits.hpp>
-#include <thermopower/gap/design/possible.hpp>
+#include <thermopower/design/diagnosed.hpp>
+#include <thermopower/design/limits.hpp>
+#include <thermopower/design/possible.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 
@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// Simulated values of the actuator's signals by row; empty where the model does not have the signal.
 using Motion = std::array<Eigen::VectorXd, plant::actuator_signal_count>;
@@ -168,4 +168,4 @@ private:
   mutable double rows_simulated_ = 0.0;
 };
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

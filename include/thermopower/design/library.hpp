@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/random.hpp>
-#include <thermopower/gap/design/schedule.hpp>
+#include <thermopower/design/random.hpp>
+#include <thermopower/design/schedule.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// Draws experiments from the library of shapes, and changes them a little.
 ///
@@ -130,4 +130,4 @@ private:
   const Limits& limits_;
 };
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/diagnosed.hpp>
-#include <thermopower/gap/design/possible.hpp>
+#include <thermopower/design/diagnosed.hpp>
+#include <thermopower/design/possible.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// An explanation that is still possible, and whether it predicts all data as well as the likeliest one.
 struct StillOpen {
@@ -68,4 +68,4 @@ inline std::vector<double> weights_of(const std::vector<Possible>& explanations)
   return weights;
 }
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// Random numbers that are the same on every machine: the distributions of the standard library are not.
 ///
@@ -42,4 +42,4 @@ private:
   std::mt19937_64 engine_;
 };
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/limits.hpp>
-#include <thermopower/gap/design/prediction.hpp>
+#include <thermopower/design/limits.hpp>
+#include <thermopower/design/prediction.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// How much of a limit an experiment uses.
 struct LimitUse {
@@ -65,4 +65,4 @@ inline LimitUse use_of_commands(const Recording& schedule, const Limits& limits)
   return most;
 }
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
+
+using namespace gap;  // NOLINT: what a user of a design names comes from the diagnosis, too
 
 /// A signal that will be recorded, and its noise.
 struct Watched {
@@ -37,4 +39,4 @@ inline DiagnosedGap gap_of(const Model& model, const Diagnosis& diagnosis) {
   return gap;
 }
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -2,12 +2,12 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/limits.hpp>
-#include <thermopower/gap/design/needs.hpp>
-#include <thermopower/gap/design/outcome.hpp>
-#include <thermopower/gap/design/remaining.hpp>
-#include <thermopower/gap/design/search.hpp>
-#include <thermopower/gap/design/words.hpp>
+#include <thermopower/design/limits.hpp>
+#include <thermopower/design/needs.hpp>
+#include <thermopower/design/outcome.hpp>
+#include <thermopower/design/remaining.hpp>
+#include <thermopower/design/search.hpp>
+#include <thermopower/design/words.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// What a design may be told.
 struct DesignOptions {
@@ -258,4 +258,4 @@ inline Design design_experiment(const DiagnosedGap& gap, const Limits& limits, c
   return detail::Designer(gap, limits, options, catalogue_of(gap.model, given)).run();
 }
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

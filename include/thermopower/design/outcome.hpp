@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/words.hpp>
+#include <thermopower/design/words.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/signal.hpp>
 
@@ -12,7 +12,9 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
+
+using namespace gap;  // NOLINT: what a user of a design names comes from the diagnosis, too
 
 /// How a design ends.
 enum class Ending {
@@ -65,4 +67,4 @@ struct Design {
   std::size_t experiments_tried = 0;  ///< that the search simulated
 };
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
-#include "../../catch.hpp"
+#include "../catch.hpp"
 
-#include <thermopower/gap/design/library.hpp>
-#include <thermopower/gap/design/limit_check.hpp>
-#include <thermopower/gap/design/needs.hpp>
-#include <thermopower/gap/design/schedule.hpp>
-#include <thermopower/gap/design/separation.hpp>
+#include <thermopower/design/library.hpp>
+#include <thermopower/design/limit_check.hpp>
+#include <thermopower/design/needs.hpp>
+#include <thermopower/design/schedule.hpp>
+#include <thermopower/design/separation.hpp>
 
 #include <Eigen/Dense>
 
@@ -16,7 +16,7 @@
 #include <string>
 
 using namespace thermopower::gap;
-using namespace thermopower::gap::design;
+using namespace thermopower::design;
 
 namespace {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
-#include "../../catch.hpp"
-#include "../plants.hpp"
+#include "../catch.hpp"
+#include "../gap/plants.hpp"
 
-#include <thermopower/gap/design/design.hpp>
+#include <thermopower/design/design.hpp>
 #include <thermopower/gap/diagnose.hpp>
 #include <thermopower/gap/simulate.hpp>
 
@@ -15,7 +15,7 @@
 // looks the same. The drum is stepped here, apart from the library's equations.
 
 using namespace thermopower::gap;
-using namespace thermopower::gap::design;
+using namespace thermopower::design;
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// Names in a row: `a, b and c`.
 inline std::string in_a_row(const std::vector<std::string>& names) {
@@ -51,4 +51,4 @@ inline std::string percent(double share) {
   return text;
 }
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/library.hpp>
-#include <thermopower/gap/design/limit_check.hpp>
-#include <thermopower/gap/design/remaining.hpp>
-#include <thermopower/gap/design/separation.hpp>
+#include <thermopower/design/library.hpp>
+#include <thermopower/design/limit_check.hpp>
+#include <thermopower/design/remaining.hpp>
+#include <thermopower/design/separation.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -14,12 +14,11 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// What the search for an experiment goes by.
 struct SearchSettings {
-  double rows =
-      6e6;  ///< simulated rows a design may spend: 5 s on one core, benchmark `gap_design_benchmark`
+  double rows = 6e6;  ///< simulated rows a design may spend: 5 s on one core, benchmark `design_benchmark`
   double screening = 0.35;          ///< share of them to find what can be told apart at all
   double enough_right = 0.98;       ///< beyond it a shorter experiment is worth more than a surer one
   double whole_duration = 0.06;     ///< what the longest experiment costs, in units of being right
@@ -203,4 +202,4 @@ private:
   std::vector<std::pair<std::string, int>> stopped_by_;
 };
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/random.hpp>
+#include <thermopower/design/random.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/explanation.hpp>
 #include <thermopower/plant/calibration_id.hpp>
@@ -18,7 +18,9 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
+
+using namespace gap;  // NOLINT: what a user of a design names comes from the diagnosis, too
 
 /// An explanation that the recordings so far leave possible, with what they leave open of its parameters: a normal distribution
 /// around the fit, in the fit's coordinates.
@@ -174,4 +176,4 @@ private:
   Eigen::MatrixXd axes_;  ///< a column for each direction
 };
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

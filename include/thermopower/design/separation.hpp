@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/prediction.hpp>
+#include <thermopower/design/prediction.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
 
 /// How far apart two explanations are in an experiment, in standard deviations of everything that is uncertain:
 /// \f$ T = d^T (I + V_1 V_1^T + V_2 V_2^T)^{-1} d \f$ with the difference d of their predictions in units of the noise, and
@@ -100,4 +100,4 @@ inline double expected_right(const Separations& separations, const std::vector<d
   return std::max(0.0, 1.0 - wrong);
 }
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design

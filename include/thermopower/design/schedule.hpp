@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/design/limits.hpp>
+#include <thermopower/design/limits.hpp>
 #include <thermopower/gap/recording.hpp>
 
 #include <Eigen/Core>
@@ -13,7 +13,9 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap::design {
+namespace thermopower::design {
+
+using namespace gap;  // NOLINT: what a user of a design names comes from the diagnosis, too
 
 /// The shapes that an experiment is made of.
 enum class Shape {
@@ -147,4 +149,4 @@ inline Recording schedule_of(const Experiment& experiment, const Limits& limits)
   return schedule;
 }
 
-}  // namespace thermopower::gap::design
+}  // namespace thermopower::design
