@@ -223,23 +223,20 @@ bool leaves_open(const DiagnosedGap& gap) {
     return false;
   const auto open = still_open(gap, standard_catalogue());
   if (open.size() < 2) return false;
-  return open.front().explanation.probability() < named || open[1].tied ||
-         open[1].explanation.probability() >= 0.02;
+  return open.front().probability() < named || open[1].is_tied || open[1].probability() >= 0.02;
 }
 
 /// An experiment of a fixed kind as long as asked, as large as the limits allow.
-std::optional<Recording> fixed_kind(Shape shape, double length_s, const Limits& limits, Search& search) {
+std::optional<Recording> fixed_kind(Shape shape, bool is_chirp, const Limits& limits, Search& search) {
+  const double length_s = limits.duration_s;
   Piece piece;
   piece.shape = shape;
   piece.duration_s = length_s;
   piece.size = 0.5;
   piece.level = limits.vary.front().from < 0.0 ? 0.0 : 0.5;
   piece.period_s = length_s / 8.0;
-  piece.last_period_s = std::max(length_s / 100.0, 8.0 * limits.row_s);
-  Tried one;
-  one.experiment.courses = {{{piece}, 0.0}};
-  one.schedule = schedule_of(one.experiment, limits);
-  auto safe = search.made_safe(one);
+  piece.last_period_s = is_chirp ? std::max(length_s / 100.0, 8.0 * limits.row_s) : piece.period_s;
+  auto safe = search.made_safe({{{{piece}, 0.0}}});
   if (!safe) return std::nullopt;
   return safe->schedule;
 }
@@ -278,26 +275,22 @@ std::optional<Recording> next_of(const std::string& contender, int number, const
     if (next.ending != Ending::schedule) return std::nullopt;
     return next.schedule;
   }
-  std::vector<Possible> explanations;
-  for (StillOpen& one : still_open(gap, standard_catalogue()))
-    explanations.push_back(std::move(one.explanation));
-  const Predictor predictor(gap.model, standard_catalogue(), limits, gap.watched, gap.horizon_s);
-  Search search(predictor, explanations, limits, {}, seed);
+  const std::vector<Possible> explanations = still_open(gap, standard_catalogue());
+  const Predictor predictor(gap, standard_catalogue(), limits);
+  DesignOptions options;
+  options.seed = seed;
+  Search search(predictor, explanations, limits, options);
   Random random(seed);
   const Library library(limits);
-  if (contender == "chirp") return fixed_kind(Shape::chirp, limits.duration_s, limits, search);
+  if (contender == "chirp") return fixed_kind(Shape::sine, true, limits, search);
   if (contender == "fixed") {
-    constexpr Shape shapes[] = {Shape::square, Shape::triangle, Shape::sine, Shape::chirp};
-    return fixed_kind(shapes[number % 4], limits.duration_s, limits, search);
+    constexpr Shape shapes[] = {Shape::square, Shape::triangle, Shape::sine, Shape::sine};
+    return fixed_kind(shapes[number % 4], number % 4 == 3, limits, search);
   }
   if (contender == "random") {
     for (int i = 0; i < 20; ++i) {
-      Tried one;
-      one.experiment = library.draw(random);
-      const double longer = limits.duration_s / one.experiment.duration_s();
-      for (Course& course : one.experiment.courses)
-        for (Piece& piece : course.pieces) piece.duration_s *= longer;
-      one.schedule = schedule_of(one.experiment, limits);
+      Experiment one = library.draw(random);
+      one.stretch(limits.duration_s / one.duration_s());
       if (auto safe = search.made_safe(one)) return safe->schedule;
     }
     return std::nullopt;
@@ -314,7 +307,7 @@ std::optional<Recording> next_of(const std::string& contender, int number, const
     const double size = information.rows() > 0 ? information.ldlt().vectorD().array().log().sum() : 0.0;
     if (size > best) best = size, most = one;
   }
-  if (most) most = search.made_safe(*most);
+  if (most) most = search.made_safe(most->experiment);
   if (!most) return std::nullopt;
   return most->schedule;
 }
@@ -375,12 +368,10 @@ int main(int count, char** values) {
         }
         if (contender == "designed" && violations > 0) {
           Random draw(static_cast<unsigned>(number) + 7u);
-          const Predictor predictor(now.model, standard_catalogue(), hidden->limits, now.watched,
-                                    now.horizon_s);
-          for (const StillOpen& one : still_open(now, standard_catalogue()))
+          const Predictor predictor(now, standard_catalogue(), hidden->limits);
+          for (const Possible& one : still_open(now, standard_catalogue()))
             for (int k = 0; k < violations; ++k) {
-              const double use =
-                  use_of(predictor.free_run(*schedule, one.explanation.draw(draw)), hidden->limits).share;
+              const double use = use_of(predictor.free_run(*schedule, one.draw(draw)), hidden->limits).share;
               ++draws;
               passed += use > 1.0;
               most_passed = std::max(most_passed, use);
@@ -399,8 +390,8 @@ int main(int count, char** values) {
           if (best != next.ranking.end()) {
             char text[32];
             std::snprintf(text, sizeof text, "%.2f", best->probability);
-            steps += " [" + std::string(to_string(next.verdict)) + " " + words_of({best->effects}) + " " +
-                     text + "]";
+            steps +=
+                " [" + std::string(to_string(next.verdict)) + " " + name_of(best->effects) + " " + text + "]";
           }
         } catch (const std::exception& error) {
           steps += std::string(" refused: ") + error.what();

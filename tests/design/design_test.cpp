@@ -116,7 +116,7 @@ TEST_CASE("The same seed gives the same design") {
   const Recording first = play(one_way(), 0.012, 0.0, 1);
   const DiagnosedGap gap = gap_of(drum(), diagnose(drum(), {first}));
   DesignOptions options;
-  options.search.rows = 3e5;
+  options.rows = 3e5;
   const Design one = design_experiment(gap, limits(), options),
                other = design_experiment(gap, limits(), options);
   CHECK(one.sentence == other.sentence);
@@ -131,13 +131,13 @@ TEST_CASE("A limit holds for every explanation that is drawn from what the recor
   close.angle_deg = {-2000.0, 2000.0};
   close.rate_dps = {-900.0, 900.0};
   DesignOptions options;
-  options.search.rows = 6e5;
+  options.rows = 6e5;
   const Design next = design_experiment(gap, close, options);
   INFO(next.sentence);
   REQUIRE(next.ending == Ending::schedule);
-  const Predictor predictor(gap.model, standard_catalogue(), close, gap.watched, gap.horizon_s);
+  const Predictor predictor(gap, standard_catalogue(), close);
   Random random(99);
-  for (const StillOpen& one : still_open(gap, standard_catalogue()))
+  for (const Possible& one : still_open(gap, standard_catalogue()))
     for (int i = 0; i < 100; ++i)
-      CHECK(use_of(predictor.free_run(next.schedule, one.explanation.draw(random)), close).share <= 1.0);
+      CHECK(use_of(predictor.free_run(next.schedule, one.draw(random)), close).share <= 1.0);
 }

@@ -2,18 +2,18 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/design/diagnosed.hpp>
 #include <thermopower/design/limits.hpp>
-#include <thermopower/design/needs.hpp>
+#include <thermopower/design/options.hpp>
 #include <thermopower/design/outcome.hpp>
-#include <thermopower/design/remaining.hpp>
 #include <thermopower/design/search.hpp>
-#include <thermopower/design/words.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -21,14 +21,6 @@
 #include <vector>
 
 namespace thermopower::design {
-
-/// What a design may be told.
-struct DesignOptions {
-  SearchSettings search = {};  ///< how much is tried
-  double sure = 0.95;          ///< probability from which on an explanation is sure enough, 0.5..1
-  double worth_doing = 0.75;   ///< an experiment is proposed where it is expected to be right so often, 0..1
-  unsigned seed = 1;           ///< the same seed gives the same design
-};
 
 /// Designs the experiment that best tells apart what a diagnosis leaves open.
 ///
@@ -47,201 +39,178 @@ class Designer {
 public:
   Designer(const DiagnosedGap& gap, const Limits& limits, const DesignOptions& options,
            const Catalogue& catalogue)
-      : gap_(gap), limits_(limits), options_(options), catalogue_(catalogue) {}
+      : gap_(gap),
+        limits_(limits),
+        options_(options),
+        catalogue_(catalogue),
+        explanations_(still_open(gap, catalogue, options)) {}
 
   Design run() {
-    for (StillOpen& one : still_open(gap_, catalogue_)) {
-      has_tie_ = has_tie_ || one.tied;
-      explanations_.push_back(std::move(one.explanation));
-    }
     if (explanations_.empty())
       throw InvalidInput("the report has no explanation with its numbers: diagnose again");
-    weights_ = weights_of(explanations_);
-    if (is_over()) return std::move(result_);
-    const Predictor predictor(gap_.model, catalogue_, limits_, gap_.watched, gap_.horizon_s);
-    Search search(predictor, explanations_, limits_, options_.search, options_.seed);
-    const double rows = options_.search.rows;
-    search.screen(options_.search.screening * rows);
-    if (search.tried().empty()) return nothing_possible(search);
-    result_.best_apart = search.best_apart().maxCoeff();
-    std::vector<std::size_t> label = classes_of(search.best_apart());
-    std::optional<Tried> best;
-    if (count_of(label) == 1) {
-      // Causes that these limits hide from each other are not an answer; those that nothing tells apart are one.
-      write_classes(label);
-      result_.expected_right = *std::max_element(weights_.begin(), weights_.end());
-      const std::optional<RaisedLimit> helpful = helpful_limit(search);
+    if (is_over()) return result_;
+    const std::vector<double> weights = weights_of(explanations_, options_);
+    const Predictor predictor(gap_, catalogue_, limits_);
+    Search search(predictor, explanations_, limits_, options_);
+    search.screen(options_.screening * options_.rows);
+    if (search.tried().empty()) return nothing_possible(search.stopped_by());
+    const Classes classes(weights, search.best_apart());
+    for (std::size_t i = 0; i < explanations_.size(); ++i) {
+      result_.classes.resize(classes.count);
+      result_.classes[classes.label[i]].members.push_back(explanations_[i].effects());
+      result_.classes[classes.label[i]].probability += explanations_[i].probability();
+    }
+    result_.expected_right = *std::max_element(weights.begin(), weights.end());
+    // Causes that these limits hide from each other are not an answer; those that nothing tells apart are one.
+    if (classes.count == 1) {
+      const std::optional<RaisedLimit> helpful = helpful_limit(search, weights);
       return helpful || result_.classes.front().probability < options_.sure ? cannot_decide(helpful)
                                                                             : enough();
     }
-    if (count_of(label) > 1) {
-      best = search.improve((1.0 - options_.search.screening) * rows, weights_, label);
-      if (best) best = search.made_safe(std::move(*best));
-      result_.best_apart = search.best_apart().maxCoeff();
-    }
-    result_.experiments_tried = search.tried().size();
-    write_classes(label);
-    result_.expected_right = best ? expected_right(best->apart, weights_, label)
-                                  : *std::max_element(weights_.begin(), weights_.end());
-    if (!best || result_.expected_right < options_.worth_doing) return cannot_decide(helpful_limit(search));
-    propose(*best, predictor, label);
-    return std::move(result_);
+    std::optional<Tried> best = search.improve((1.0 - options_.screening) * options_.rows, classes);
+    if (best) best = search.made_safe(best->experiment);
+    if (best) result_.expected_right = classes.expected_right(best->apart);
+    if (!best || result_.expected_right < options_.worth_doing)
+      return cannot_decide(helpful_limit(search, weights));
+    return propose(*best, predictor, classes);
   }
 
 private:
-  static std::size_t count_of(const std::vector<std::size_t>& label) {
-    assert(!label.empty());
-    return 1 + *std::max_element(label.begin(), label.end());
-  }
-
   /// Whether the report leaves nothing to tell apart.
   bool is_over() {
     const Possible& first = explanations_.front();
-    for (const Possible& one : explanations_)
-      result_.classes.push_back({{one.effects()}, one.probability(), {}});
-    if (gap_.verdict == Verdict::no_gap ||
-        (is_sure() && first.effects().empty() && gap_.verdict != Verdict::unexplained)) {
-      result_.ending = Ending::enough;
-      result_.sentence = "Enough: nothing is missing.";
-    } else if (gap_.verdict == Verdict::unexplained || (is_sure() && first.is_curve())) {
-      result_.ending = Ending::none_of_these;
-      result_.sentence = "None of these is still the likeliest: no named cause closes the gap" +
-                         (first.is_curve() ? "; " + first.name() + " has " + two_digits(first.probability())
-                                           : std::string()) +
-                         ". Record what nobody has recorded yet, or add an effect of your own.";
-    } else if (is_sure() && !has_tie_) {
-      enough();
+    const bool is_sure = first.probability() >= options_.sure,
+               is_unexplained = gap_.verdict == Verdict::unexplained;
+    const auto is_tied = [](const Possible& one) { return one.is_tied; };
+    if (gap_.verdict == Verdict::no_gap || (is_sure && first.effects().empty() && !is_unexplained)) {
+      end(Ending::enough, "Enough: nothing is missing.");
+    } else if (is_unexplained || (is_sure && first.is_curve())) {
+      end(Ending::none_of_these,
+          "None of these is still the likeliest: no named cause closes the gap" +
+              (first.is_curve() ? "; " + name_of(first.effects()) + " has " + two_digits(first.probability())
+                                : std::string()) +
+              ". Record what nobody has recorded yet, or add an effect of your own.");
+    } else if (is_sure && std::none_of(explanations_.begin(), explanations_.end(), is_tied)) {
+      end(Ending::enough,
+          "Enough: " + name_of(first.effects()) + " has " + two_digits(first.probability()) + ".");
     } else {
-      result_.classes.clear();
       return false;
     }
+    for (const Possible& one : explanations_)
+      result_.classes.push_back({{one.effects()}, one.probability(), {}});
     result_.expected_right = first.probability();
     return true;
   }
 
-  bool is_sure() const { return explanations_.front().probability() >= options_.sure; }
-
-  Design enough() {
-    result_.ending = Ending::enough;
-    const ExplanationClass& first = result_.classes.front();
-    result_.expected_right = first.probability;
-    result_.sentence =
-        "Enough: " + first.name() + " has " + two_digits(first.probability) +
-        (first.members.size() > 1 ? "; no experiment near these limits tells its members apart." : ".");
+  Design& end(Ending ending, const std::string& sentence) {
+    result_.ending = ending;
+    result_.sentence = sentence;
     return result_;
   }
 
-  void write_classes(const std::vector<std::size_t>& label) {
-    result_.classes.assign(count_of(label), {});
-    for (std::size_t i = 0; i < label.size(); ++i) {
-      result_.classes[label[i]].members.push_back(explanations_[i].effects());
-      result_.classes[label[i]].probability += explanations_[i].probability();
-    }
+  Design enough() {
+    const ExplanationClass& first = result_.classes.front();
+    result_.expected_right = first.probability;
+    return end(Ending::enough, "Enough: " + first.name() + " has " + two_digits(first.probability) +
+                                   "; no experiment near these limits tells its members apart.");
   }
 
-  Design nothing_possible(const Search& search) {
-    result_.ending = Ending::nothing_possible;
-    const std::string limit = search.stopped_by().empty() ? std::string() : search.stopped_by().front().first;
-    result_.sentence = "No experiment keeps these limits for every explanation that is still possible" +
-                       (limit.empty() ? "." : "; the limit that stops most of them is " + limit + ".");
+  Design nothing_possible(const std::string& limit) {
     result_.limit_to_raise = limit;
-    return std::move(result_);
+    return end(Ending::nothing_possible,
+               "No experiment keeps these limits for every explanation that is still possible" +
+                   (limit.empty() ? "." : "; the limit that stops most of them is " + limit + "."));
   }
 
   /// The first limit that alone, raised, lets an experiment decide.
-  std::optional<RaisedLimit> helpful_limit(const Search& search) const {
-    constexpr double share_of_rows = 0.1;
-    std::vector<RaisedLimit> all = raised_limits(limits_);
-    for (RaisedLimit& raised : all) {
-      const Predictor predictor(gap_.model, catalogue_, raised.limits, gap_.watched, gap_.horizon_s);
-      Search again(predictor, explanations_, raised.limits, options_.search, options_.seed);
+  std::optional<RaisedLimit> helpful_limit(const Search& search, const std::vector<double>& weights) const {
+    for (RaisedLimit& raised : raised_limits(limits_)) {
+      const Predictor predictor(gap_, catalogue_, raised.limits);
+      Search again(predictor, explanations_, raised.limits, options_);
       for (std::size_t i = 0; i < std::min<std::size_t>(search.tried().size(), 2); ++i)
         again.add(search.tried()[i].experiment);
-      again.screen(share_of_rows * options_.search.rows);
-      if (again.tried().empty()) continue;
-      const std::vector<std::size_t> label = classes_of(again.best_apart());
-      const double right = expected_right(again.best_apart(), weights_, label);
-      if (count_of(label) > 1 && right >= options_.worth_doing && right > result_.expected_right)
+      again.screen(options_.raising * options_.rows);
+      const Classes classes(weights, again.best_apart());
+      const double right = classes.expected_right(again.best_apart());
+      if (classes.count > 1 && right >= options_.worth_doing && right > result_.expected_right)
         return std::move(raised);
     }
     return std::nullopt;
   }
 
   Design cannot_decide(const std::optional<RaisedLimit>& helpful) {
-    result_.ending = Ending::cannot_decide;
-    result_.expected_right =
-        std::max(result_.expected_right, *std::max_element(weights_.begin(), weights_.end()));
-    result_.sentence = "No experiment within these limits can decide between " + words_of_classes() +
-                       ": the best one that was found is expected to be right in " +
-                       percent(result_.expected_right) + " of all cases";
-    if (!helpful) {
-      result_.sentence += "; raising one limit alone to four times does not help.";
-      return std::move(result_);
-    }
-    const bool lowered =
-        helpful->field.size() > 5 && helpful->field.compare(helpful->field.size() - 5, 5, ".from") == 0;
-    result_.limit_to_raise = helpful->field;
-    result_.raise_to = helpful->to;
-    result_.sentence += std::string(lowered ? "; lower" : "; raise") + " the limit of " + helpful->field +
-                        " to " + Limits::text_of(helpful->to) + ".";
-    return std::move(result_);
-  }
-
-  std::string words_of_classes() const {
     std::vector<std::string> names;
     for (const Possible& one : explanations_)
-      if (names.size() < 3) names.push_back(one.name());
-    return in_a_row(names);
+      if (names.size() < 3) names.push_back(name_of(one.effects()));
+    std::string sentence = "No experiment within these limits can decide between " + in_a_row(names) +
+                           ": the best one that was found is expected to be right in " + per_cent() +
+                           " of all cases";
+    if (!helpful)
+      return end(Ending::cannot_decide, sentence + "; raising one limit alone to four times does not help.");
+    const VariedInput* input = nullptr;
+    for (const VariedInput& one : limits_.vary)
+      if (helpful->field == "vary." + one.column + ".from") input = &one;
+    result_.limit_to_raise = helpful->field;
+    result_.raise_to = helpful->to;
+    return end(Ending::cannot_decide, sentence + (input != nullptr ? "; lower" : "; raise") +
+                                          " the limit of " + helpful->field + " to " +
+                                          Limits::text_of(helpful->to) + ".");
   }
 
-  void propose(const Tried& best, const Predictor& predictor, const std::vector<std::size_t>& label) {
-    result_.ending = Ending::schedule;
+  Design propose(const Tried& best, const Predictor& predictor, const Classes& classes) {
     result_.schedule = best.schedule;
-    constexpr int draws = 20;
-    for (std::size_t k = 0; k < result_.classes.size(); ++k) {
-      const std::size_t member =
-          static_cast<std::size_t>(std::find(label.begin(), label.end(), k) - label.begin());
-      assert(member < explanations_.size());
-      const Possible& one = explanations_[member];
-      std::vector<Motion> drawn;
-      Random random(options_.seed + 17u);
-      for (int i = 0; i < draws; ++i) drawn.push_back(predictor.free_run(best.schedule, one.draw(random)));
-      const Motion middle = predictor.free_run(best.schedule, one.fit());
-      for (const Watched& watched : predictor.watched()) {
-        const auto at = static_cast<std::size_t>(watched.signal);
-        if (middle[at].size() == 0) continue;
-        assert(std::all_of(drawn.begin(), drawn.end(),
-                           [&](const Motion& each) { return each[at].size() == middle[at].size(); }));
-        PredictedSignal signal{watched.signal, middle[at], middle[at], middle[at]};
-        for (Eigen::Index row = 0; row < middle[at].size(); ++row) {
-          std::vector<double> values;
-          for (const Motion& motion : drawn) values.push_back(motion[at][row]);
-          std::sort(values.begin(), values.end());
-          signal.low[row] = std::min(values[1], middle[at][row]);
-          signal.high[row] = std::max(values[draws - 2], middle[at][row]);
-        }
-        result_.classes[k].predicted.push_back(std::move(signal));
-      }
+    for (std::size_t k = 0; k < classes.count; ++k) {
+      const auto member = std::find(classes.label.begin(), classes.label.end(), k) - classes.label.begin();
+      result_.classes[k].predicted =
+          predicted(best.schedule, predictor, explanations_[static_cast<std::size_t>(member)]);
     }
-    std::sort(result_.classes.begin(), result_.classes.end(),
-              [](const ExplanationClass& one, const ExplanationClass& other) {
-                return one.probability > other.probability;
-              });
+    std::stable_sort(result_.classes.begin(), result_.classes.end(),
+                     [](const ExplanationClass& one, const ExplanationClass& other) {
+                       return one.probability > other.probability;
+                     });
     std::vector<std::string> names;
     for (const ExplanationClass& one : result_.classes) names.push_back(one.name());
-    result_.sentence = "Play this schedule (" + Limits::text_of(best.duration_s) +
-                       " s): it is expected to tell " + in_a_row(names) + " apart in " +
-                       percent(result_.expected_right) + " of all cases.";
+    return end(Ending::schedule, "Play this schedule (" + Limits::text_of(best.duration_s()) +
+                                     " s): it is expected to tell " + in_a_row(names) + " apart in " +
+                                     per_cent() + " of all cases.");
+  }
+
+  /// Of each watched signal the range of nine in ten draws, and the fit.
+  std::vector<PredictedSignal> predicted(const Recording& schedule, const Predictor& predictor,
+                                         const Possible& one) const {
+    constexpr std::size_t draws = 20, outside = 1;
+    Random random(options_.seed + 17u);
+    const Motion middle = predictor.free_run(schedule, one.fit());
+    std::vector<Motion> drawn;
+    for (std::size_t i = 0; i < draws; ++i) drawn.push_back(predictor.free_run(schedule, one.draw(random)));
+    std::vector<PredictedSignal> all;
+    for (const Watched& watched : gap_.watched) {
+      const auto at = static_cast<std::size_t>(watched.signal);
+      if (middle[at].size() == 0) continue;
+      PredictedSignal signal{watched.signal, middle[at], middle[at], middle[at]};
+      for (Eigen::Index row = 0; row < middle[at].size(); ++row) {
+        std::vector<double> values;
+        for (const Motion& motion : drawn) values.push_back(motion[at][row]);
+        std::sort(values.begin(), values.end());
+        signal.low[row] = std::min(values[outside], middle[at][row]);
+        signal.high[row] = std::max(values[draws - 1 - outside], middle[at][row]);
+      }
+      all.push_back(std::move(signal));
+    }
+    return all;
+  }
+
+  /// The expected share of right answers in per cent; 100 is never claimed.
+  std::string per_cent() const {
+    return std::to_string(std::lround(std::min(100.0 * result_.expected_right, 99.0))) + " %";
   }
 
   const DiagnosedGap& gap_;
   const Limits& limits_;
   const DesignOptions options_;
   const Catalogue& catalogue_;
+  const std::vector<Possible> explanations_;
   Design result_;
-  std::vector<Possible> explanations_;
-  std::vector<double> weights_;
-  bool has_tie_ = false;  ///< an explanation predicts as well as the likeliest one
 };
 
 }  // namespace detail

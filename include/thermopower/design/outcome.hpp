@@ -2,13 +2,14 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/design/words.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/signal.hpp>
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,27 @@ inline const char* to_string(Ending ending) {
   return names[static_cast<int>(ending)];
 }
 
+/// Names in a row: `a, b and c`. @param last  between the last two
+inline std::string in_a_row(const std::vector<std::string>& names, const std::string& between = ", ",
+                            const std::string& last = " and ") {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < names.size() ? between : last) + names[i];
+  return text;
+}
+
+/// An explanation in words. @param effects  ids of its causes
+inline std::string name_of(const std::vector<std::string>& effects) {
+  return effects.empty() ? "nothing is missing" : in_a_row(effects, " with ", " with ");
+}
+
+/// A probability with two digits; 1 is never claimed.
+inline std::string two_digits(double probability) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.2f", std::min(probability, 0.99));
+  return text;
+}
+
 /// What a class of explanations predicts of one signal.
 struct PredictedSignal {
   Signal signal = Signal::motor_C;  ///< that is predicted
@@ -48,8 +70,17 @@ struct ExplanationClass {
   double probability = 0.0;                       ///< of all of them, as the report has it
   std::vector<PredictedSignal> predicted;  ///< of the proposed experiment, one for each recorded signal
 
-  /// Its name in a sentence.
-  std::string name() const { return words_of(members); }
+  /// Its name in a sentence: the first members, and how many others look alike.
+  std::string name() const {
+    constexpr std::size_t shown = 2;
+    std::vector<std::string> names;
+    for (const std::vector<std::string>& ids : members) names.push_back(name_of(ids));
+    if (names.size() > shown + 1) {
+      names.resize(shown);
+      names.push_back(std::to_string(members.size() - shown) + " others");
+    }
+    return in_a_row(names, " or ", " or ");
+  }
 };
 
 /// The next experiment.
@@ -60,11 +91,8 @@ struct Design {
   std::vector<ExplanationClass> classes;     ///< likeliest first
   double expected_right =
       0.0;  ///< probability that the likeliest class after the experiment is the true one, 0..1
-  double best_apart =
-      0.0;  ///< the largest separation of two explanations that was reached, in standard deviations
-  std::string limit_to_raise;         ///< field of the limits; empty where none helps or none is needed
-  double raise_to = 0.0;              ///< to what, in its unit
-  std::size_t experiments_tried = 0;  ///< that the search simulated
+  std::string limit_to_raise;  ///< field of the limits; empty where none helps or none is needed
+  double raise_to = 0.0;       ///< to what, in its unit
 };
 
 }  // namespace thermopower::design

@@ -2,8 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/design/random.hpp>
-#include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/design/diagnosed.hpp>
+#include <thermopower/design/experiment.hpp>
+#include <thermopower/design/options.hpp>
+#include <thermopower/design/outcome.hpp>
 #include <thermopower/gap/fit/explanation.hpp>
 #include <thermopower/plant/calibration_id.hpp>
 #include <thermopower/plant/plant.hpp>
@@ -14,13 +16,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace thermopower::design {
-
-using namespace gap;  // NOLINT: what a user of a design names comes from the diagnosis, too
 
 /// An explanation that the recordings so far leave possible, with what they leave open of its parameters: a normal distribution
 /// around the fit, in the fit's coordinates.
@@ -28,46 +29,39 @@ using namespace gap;  // NOLINT: what a user of a design names comes from the di
 /// How to: @ref design_the_next_experiment.
 class Possible {
 public:
-  /// @param model      as it was diagnosed
+  /// @param model      as it was diagnosed; must outlive the object
   /// @param catalogue  knows its effects; must outlive the object
   /// @param ranked     of that diagnosis
   /// @return none where the catalogue lacks an effect, or the report its numbers
   static std::optional<Possible> of(const Model& model, const Catalogue& catalogue,
                                     const RankedExplanation& ranked) {
-    Possible one;
+    Possible one(model);
     one.effects_ = ranked.effects;
     one.probability_ = ranked.probability;
     const std::vector<CalibratedConstant> constants = model.calibrated();
     for (const std::string& id : ranked.effects) {
-      if (const CatalogueEntry* entry = catalogue.find(id)) {
-        one.explanation_.effects.push_back(entry);
-        continue;
-      }
-      bool found = false;
-      for (std::size_t i = 0; i < constants.size(); ++i)
-        if (plant::calibration_id(constants[i].id) == id) {
-          one.explanation_.released.push_back(static_cast<int>(i));
-          found = true;
-        }
-      if (!found) return std::nullopt;
+      const auto constant =
+          std::find_if(constants.begin(), constants.end(),
+                       [&](const CalibratedConstant& each) { return plant::calibration_id(each.id) == id; });
+      if (const CatalogueEntry* entry = catalogue.find(id)) one.explanation_.effects.push_back(entry);
+      else if (constant != constants.end())
+        one.explanation_.released.push_back(static_cast<int>(constant - constants.begin()));
+      else return std::nullopt;
     }
     one.coordinates_ = engine::coordinates(model, one.explanation_, catalogue);
-    const auto size = static_cast<Eigen::Index>(one.coordinates_.size());
-    one.at_.resize(size);
-    for (Eigen::Index i = 0; i < size; ++i) one.at_[i] = one.coordinates_[static_cast<std::size_t>(i)].start;
+    one.at_.resize(static_cast<Eigen::Index>(one.coordinates_.size()));
+    for (Eigen::Index i = 0; i < one.at_.size(); ++i) one.at_[i] = one.coordinate(i).start;
     std::vector<Eigen::Index> place;
     for (const auto* list : {&ranked.fitted, &ranked.fixed})
       for (const FittedCoordinate& fitted : *list) {
-        Eigen::Index at = -1;
-        for (Eigen::Index i = 0; i < size; ++i)
-          if (one.coordinates_[static_cast<std::size_t>(i)].name == fitted.name) at = i;
-        if (at < 0 || !std::isfinite(fitted.at)) return std::nullopt;
+        Eigen::Index at = 0;
+        while (at < one.at_.size() && one.coordinate(at).name != fitted.name) ++at;
+        if (at == one.at_.size() || !std::isfinite(fitted.at)) return std::nullopt;
         one.at_[at] = fitted.at;
         if (list == &ranked.fitted) place.push_back(at);
       }
-    if (place.empty() && size > 0) return std::nullopt;
+    if (place.empty() && one.at_.size() > 0) return std::nullopt;
     one.spread(ranked.covariance, place);
-    one.model_ = &model;
     return one;
   }
 
@@ -81,50 +75,35 @@ public:
       return id.rfind("unknown.", 0) == 0;
     });
   }
-  /// Its names in a sentence.
-  std::string name() const {
-    std::string text;
-    for (const std::string& id : effects_) text += (text.empty() ? "" : " with ") + id;
-    return text.empty() ? "nothing is missing" : text;
-  }
+  /// Whether only what was known before the data speaks against it: it predicts them as well as the likeliest one.
+  bool is_tied = false;
 
   /// How many directions its parameters are uncertain in.
   int directions() const { return static_cast<int>(axes_.cols()); }
   /// The fit.
   ParameterPoint fit() const { return point(at_); }
   /// The fit, one standard deviation away in one direction. @param direction  0 to directions() - 1
-  ParameterPoint moved(int direction, double by = 1.0) const {
+  ParameterPoint moved(int direction) const {
     assert(direction >= 0 && direction < directions());
-    return point(at_ + by * axes_.col(direction));
+    return point(at_ + axes_.col(direction));
   }
   /// Parameters as likely as the recordings make them.
   ParameterPoint draw(Random& random) const {
-    Eigen::VectorXd at = at_;
-    for (Eigen::Index k = 0; k < axes_.cols(); ++k) at += random.gauss() * axes_.col(k);
-    return point(at);
-  }
-  /// The model with this explanation in it, at its fit.
-  Model model() const { return engine::augmented(*model_, explanation_, coordinates_, at_); }
-  /// The same at parameters that are drawn.
-  Model drawn_model(Random& random) const {
-    Eigen::VectorXd at = at_;
-    for (Eigen::Index k = 0; k < axes_.cols(); ++k) at += random.gauss() * axes_.col(k);
-    return engine::augmented(*model_, explanation_, coordinates_, within(at));
+    return point(at_ + axes_ * Eigen::VectorXd::NullaryExpr(axes_.cols(), [&] { return random.gauss(); }));
   }
 
 private:
-  Eigen::VectorXd within(Eigen::VectorXd at) const {
-    assert(at.size() == static_cast<Eigen::Index>(coordinates_.size()) && at_.size() == at.size());
-    for (Eigen::Index i = 0; i < at.size(); ++i) {
-      const engine::Coordinate& one = coordinates_[static_cast<std::size_t>(i)];
-      if (!one.still && one.upper > one.lower)
-        at[i] = std::clamp(at[i], std::min(one.lower, at_[i]), std::max(one.upper, at_[i]));
-    }
-    return at;
+  explicit Possible(const Model& model) : model_(&model) {}
+
+  const engine::Coordinate& coordinate(Eigen::Index i) const {
+    return coordinates_[static_cast<std::size_t>(i)];
   }
 
-  ParameterPoint point(const Eigen::VectorXd& at) const {
-    ParameterPoint result = engine::point_of(*model_, explanation_, coordinates_, within(at));
+  ParameterPoint point(Eigen::VectorXd at) const {
+    for (Eigen::Index i = 0; i < at.size(); ++i)
+      if (const engine::Coordinate& one = coordinate(i); !one.still && one.upper > one.lower)
+        at[i] = std::clamp(at[i], std::min(one.lower, at_[i]), std::max(one.upper, at_[i]));
+    ParameterPoint result = engine::point_of(*model_, explanation_, coordinates_, at);
     result.still.clear();
     return result;
   }
@@ -132,42 +111,34 @@ private:
   /// The principal axes of what is open, each one standard deviation long; those that are next to nothing are left out. A parameter
   /// whose value the data do not tell at all is open within reason only: a normal distribution says nothing beyond.
   void spread(const Eigen::MatrixXd& covariance, const std::vector<Eigen::Index>& place) {
-    constexpr double most_of_a_logarithm = 0.7, most_of_a_range = 0.25, of_a_value = 0.5, of_a_constant = 1.0;
+    constexpr double of_a_logarithm = 0.7, of_a_range = 0.25, of_a_value = 0.5, hardly = 1e-6;
     const auto count = static_cast<Eigen::Index>(place.size());
-    const auto size = static_cast<Eigen::Index>(coordinates_.size());
     Eigen::VectorXd most(count);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const engine::Coordinate& one =
-          coordinates_[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])];
-      const double value = std::abs(at_[place[static_cast<std::size_t>(i)]]);
-      most[i] = one.prior.sd > 0.0 ? of_a_constant * one.prior.sd
-                : one.logarithmic  ? most_of_a_logarithm
-                                   : std::min(most_of_a_range * (one.upper - one.lower),
-                                             value > 0.0 ? of_a_value * value : 1e300);
+      const Eigen::Index at = place[static_cast<std::size_t>(i)];
+      const engine::Coordinate& one = coordinate(at);
+      const double range = of_a_range * (one.upper - one.lower), value = of_a_value * std::abs(at_[at]);
+      most[i] = one.prior.sd > 0.0 ? one.prior.sd
+                : one.logarithmic  ? of_a_logarithm
+                : value > 0.0      ? std::min(range, value)
+                                   : range;
     }
     // In units of what is reasonable at most, so that rounding does not depend on anybody's units.
+    const Eigen::VectorXd units = most.unaryExpr([](double one) { return one > 0.0 ? 1.0 / one : 0.0; });
     Eigen::MatrixXd scaled = Eigen::MatrixXd::Identity(count, count);
     if (covariance.rows() == count && covariance.allFinite())
-      for (Eigen::Index i = 0; i < count; ++i)
-        for (Eigen::Index k = 0; k < count; ++k)
-          scaled(i, k) = most[i] > 0.0 && most[k] > 0.0 ? covariance(i, k) / (most[i] * most[k]) : 0.0;
+      scaled = units.asDiagonal() * covariance * units.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
-    constexpr double hardly = 1e-6;  // of the standard deviation that is reasonable
-    axes_.resize(size, 0);
-    for (Eigen::Index k = count - 1; k >= 0; --k) {
-      const double sd = std::sqrt(std::max(solver.eigenvalues()[k], 0.0));
-      if (!(sd > hardly)) continue;
-      Eigen::VectorXd axis = Eigen::VectorXd::Zero(size);
-      const Eigen::VectorXd unit = solver.eigenvectors().col(k);
-      const double reach = std::min(sd, 1.0 / unit.cwiseAbs().maxCoeff());
-      for (Eigen::Index i = 0; i < count; ++i)
-        axis[place[static_cast<std::size_t>(i)]] = reach * unit[i] * most[i];
-      axes_.conservativeResize(Eigen::NoChange, axes_.cols() + 1);
-      axes_.col(axes_.cols() - 1) = axis;
-    }
+    const Eigen::VectorXd sd = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    const Eigen::VectorXd within = solver.eigenvectors().cwiseAbs().colwise().maxCoeff().cwiseInverse();
+    const Eigen::MatrixXd axes = most.asDiagonal() * solver.eigenvectors() * sd.cwiseMin(within).asDiagonal();
+    const Eigen::Index kept = (sd.array() > hardly).count();
+    axes_ = Eigen::MatrixXd::Zero(at_.size(), kept);
+    for (Eigen::Index i = 0; i < count; ++i)
+      axes_.row(place[static_cast<std::size_t>(i)]) = axes.row(i).tail(kept);
   }
 
-  const Model* model_ = nullptr;
+  const Model* model_;
   std::vector<std::string> effects_;
   double probability_ = 0.0;
   engine::Explanation explanation_;
@@ -175,5 +146,52 @@ private:
   Eigen::VectorXd at_;
   Eigen::MatrixXd axes_;  ///< a column for each direction
 };
+
+/// The explanations that an experiment has to tell apart: those that are likely, those that predict held-out data as well as the
+/// likeliest one, and where none is sure the likeliest curve, which stands for every cause that nobody has named. Likeliest first.
+/// @param catalogue  must outlive them; so must `gap`
+inline std::vector<Possible> still_open(const DiagnosedGap& gap, const Catalogue& catalogue,
+                                        const DesignOptions& options = {}) {
+  std::vector<const RankedExplanation*> order;
+  for (const RankedExplanation& one : gap.ranking)
+    if (!one.at_bound || one.probability >= options.likely) order.push_back(&one);
+  const auto ratio = [](const RankedExplanation* one) {
+    return std::isfinite(one->held_out_ratio) ? one->held_out_ratio : 1e9;
+  };
+  std::stable_sort(
+      order.begin(), order.end(), [&](const RankedExplanation* one, const RankedExplanation* other) {
+        const bool is_likely = one->probability >= options.likely || other->probability >= options.likely;
+        return is_likely ? one->probability > other->probability : ratio(one) < ratio(other);
+      });
+  std::vector<Possible> all;
+  bool needs_curve = !order.empty() && order.front()->probability < options.sure;
+  for (const RankedExplanation* one : order) {
+    std::optional<Possible> possible = Possible::of(gap.model, catalogue, *one);
+    if (!possible) continue;
+    // A curve can be like any cause of its place: that it predicts as well says nothing against the cause.
+    possible->is_tied = !all.empty() && !possible->is_curve() &&
+                        ratio(one) <= options.as_well * ratio(order.front()) &&
+                        one->train_gain >= order.front()->train_gain - options.hardly_less_likely;
+    const bool is_open =
+        (one->probability >= options.likely || possible->is_tied) && all.size() < options.most_open;
+    const bool is_first_curve =
+        needs_curve && possible->is_curve() && one->held_out_ratio < options.closes_half;
+    if (!is_open && !is_first_curve && !all.empty()) continue;
+    needs_curve = needs_curve && !possible->is_curve();
+    all.push_back(std::move(*possible));
+  }
+  return all;
+}
+
+/// Weights that sum up to 1.
+inline std::vector<double> weights_of(const std::vector<Possible>& explanations,
+                                      const DesignOptions& options) {
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (const Possible& one : explanations)
+    sum += weights.emplace_back(std::max(one.probability(), options.least_weight));
+  for (double& one : weights) one /= sum;
+  return weights;
+}
 
 }  // namespace thermopower::design

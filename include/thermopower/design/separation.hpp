@@ -23,18 +23,13 @@ namespace thermopower::design {
 inline double separation(const Prediction& one, const Prediction& other) {
   assert(one.middle.size() == other.middle.size());
   const Eigen::VectorXd difference = one.middle - other.middle;
-  const Eigen::Index count = one.open.cols() + other.open.cols();
-  double square = difference.squaredNorm();
-  if (count > 0) {
-    Eigen::MatrixXd open(difference.size(), count);
-    open << one.open, other.open;
-    // (I + V V')^-1 = I - V (I + V'V)^-1 V'
-    Eigen::MatrixXd inner = open.transpose() * open;
-    inner.diagonal().array() += 1.0;
-    const Eigen::VectorXd along = open.transpose() * difference;
-    square -= along.dot(inner.ldlt().solve(along));
-  }
-  return std::sqrt(std::max(square, 0.0));
+  Eigen::MatrixXd open(difference.size(), one.open.cols() + other.open.cols());
+  open << one.open, other.open;
+  // (I + V V')^-1 = I - V (I + V'V)^-1 V'
+  Eigen::MatrixXd inner = open.transpose() * open;
+  inner.diagonal().array() += 1.0;
+  const Eigen::VectorXd along = open.transpose() * difference;
+  return std::sqrt(std::max(difference.squaredNorm() - along.dot(inner.ldlt().solve(along)), 0.0));
 }
 
 /// The error of choosing between two normal distributions that are so far apart, each as likely as the other: the share of one beyond
@@ -50,54 +45,53 @@ using Separations = Eigen::MatrixXd;
 /// Separations of all pairs of predictions.
 inline Separations separations_of(const std::vector<Prediction>& predictions) {
   const auto count = static_cast<Eigen::Index>(predictions.size());
-  Separations all = Separations::Zero(count, count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    for (Eigen::Index k = 0; k < i; ++k)
-      all(i, k) = all(k, i) =
-          separation(predictions[static_cast<std::size_t>(i)], predictions[static_cast<std::size_t>(k)]);
-  return all;
+  return Separations::NullaryExpr(count, count, [&](Eigen::Index i, Eigen::Index k) {
+    const auto first = static_cast<std::size_t>(std::max(i, k)),
+               second = static_cast<std::size_t>(std::min(i, k));
+    return i == k ? 0.0 : separation(predictions[first], predictions[second]);
+  });
 }
 
-/// Puts explanations that nothing tells apart into one class.
-/// @param best  the largest separation of each pair that any experiment reached
-/// @return the class of each explanation, numbered from 0 in the order of their first members
-inline std::vector<std::size_t> classes_of(const Separations& best) {
-  assert(best.rows() == best.cols());
-  const auto count = static_cast<std::size_t>(best.rows());
-  std::vector<std::size_t> label(count);
-  for (std::size_t i = 0; i < count; ++i) label[i] = i;
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if (best(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) < told_apart) {
-        const std::size_t from = std::max(label[i], label[k]), to = std::min(label[i], label[k]);
-        for (std::size_t& one : label)
-          if (one == from) one = to;
+/// Explanations and the classes that they make.
+///
+/// How to: @ref design_the_next_experiment.
+struct Classes {
+  std::vector<double> weights;     ///< of the explanations, they sum up to 1
+  std::vector<std::size_t> label;  ///< class of each, numbered from 0 in the order of their first members
+  std::size_t count = 0;           ///< of classes
+
+  /// Puts explanations that nothing tells apart into one class, through others as well.
+  /// @param best  the largest separation of each pair that any experiment reached
+  Classes(std::vector<double> weights_of, const Separations& best) : weights(std::move(weights_of)) {
+    assert(best.rows() == best.cols() && best.rows() == static_cast<Eigen::Index>(weights.size()));
+    constexpr auto none = static_cast<std::size_t>(-1);
+    label.assign(weights.size(), none);
+    const auto take = [&](const auto& self, std::size_t i) -> void {
+      label[i] = count;
+      for (std::size_t k = 0; k < label.size(); ++k)
+        if (label[k] == none && best(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) < told_apart)
+          self(self, k);
+    };
+    for (std::size_t i = 0; i < label.size(); ++i)
+      if (label[i] == none) {
+        take(take, i);
+        ++count;
       }
-  std::vector<std::size_t> order;
-  for (std::size_t& one : label) {
-    const auto found = std::find(order.begin(), order.end(), one);
-    if (found == order.end()) order.push_back(one);
-    one = static_cast<std::size_t>(std::find(order.begin(), order.end(), one) - order.begin());
   }
-  return label;
-}
 
-/// How often the likeliest class after the experiment is the true one, at least: one less the expected confusions of every pair of
-/// explanations of different classes. A pair is confused at most as often as its rarer one is true.
-/// @param weights  of the explanations, they sum up to 1
-/// @param label    class of each
-inline double expected_right(const Separations& separations, const std::vector<double>& weights,
-                             const std::vector<std::size_t>& label) {
-  assert(label.size() == weights.size() && separations.rows() == static_cast<Eigen::Index>(weights.size()));
-  double wrong = 0.0;
-  for (std::size_t i = 0; i < weights.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) {
-      if (label[i] == label[k]) continue;
-      const double often = (weights[i] + weights[k]) *
-                           confusion(separations(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
-      wrong += std::min(often, std::min(weights[i], weights[k]));
-    }
-  return std::max(0.0, 1.0 - wrong);
-}
+  /// How often the likeliest class after an experiment is the true one, at least: one less the expected confusions of every pair of
+  /// explanations of different classes. A pair is confused at most as often as its rarer one is true.
+  double expected_right(const Separations& separations) const {
+    assert(separations.rows() == static_cast<Eigen::Index>(weights.size()));
+    double right = 1.0;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (label[i] != label[k])
+          right -= std::min((weights[i] + weights[k]) * confusion(separations(static_cast<Eigen::Index>(i),
+                                                                              static_cast<Eigen::Index>(k))),
+                            std::min(weights[i], weights[k]));
+    return std::max(0.0, right);
+  }
+};
 
 }  // namespace thermopower::design
