@@ -17,16 +17,17 @@ namespace tp = thermopower;
 struct Hotend {
   static constexpr tp::MonitorConfig monitor() { return {3.0, 1000.0, true}; }  // blocks, false alarms, cuts
   static constexpr tp::HeatBalanceConfig heat_balance() {
-    return {40.0,         // W at full duty and 24 V
-            0.06,         // off by 6 %
-            15.0, 0.06,   // J/K that follow the thermistor
-            3.0,  75.0,   // J/K that follow 75 s later,
-            0.15,         //   both off by 15 %
-            3.5,  0.15,   // s until heat shows: element and thermistor
-            0.10, 0.06,   // W/K to the air,
-            0.05, 0.10,   //   and what the full fan adds
-            5.0,          // K that the air may be off
-            0.07, 0.03};  // K of noise and resolution of the thermistor
+    return {40.0,        // W at full duty and 24 V
+            0.06,        // off by 6 %
+            15.0, 0.06,  // J/K that follow the thermistor
+            3.0,  75.0,  // J/K that follow 75 s later,
+            0.15,        //   both off by 15 %
+            3.5,  0.15,  // s until heat shows: element and thermistor
+            0.10, 0.06,  // W/K to the air,
+            0.05, 0.10,  //   and what the full fan adds
+            5.0,         // K that the air may be off
+            0.07, 0.03,  // K of noise and resolution of the thermistor
+            0.2};        // J by which the heat of a second is off at random
   }
   static constexpr float ohm_at_20C() { return 14.4f; }
   static constexpr float tempco_per_K() { return 0.0002f; }
@@ -37,7 +38,8 @@ struct Hotend {
 struct Bed {
   static constexpr tp::MonitorConfig monitor() { return {8.0, 1000.0, true}; }
   static constexpr tp::HeatBalanceConfig heat_balance() {
-    return {221.0, 0.05, 850.0, 0.05, 450.0, 75.0, 0.10, 7.75, 0.15, 1.3, 0.06, 0.8, 0.10, 3.0, 0.05, 0.02};
+    return {221.0, 0.05, 850.0, 0.05, 450.0, 75.0, 0.10, 7.75, 0.15,
+            1.3,   0.06, 0.8,   0.10, 3.0,   0.05, 0.02, 1.0};
   }
   static constexpr float ohm_at_20C() { return 2.6f; }
   static constexpr float tempco_per_K() { return 0.0039f; }

@@ -25,7 +25,7 @@ struct Constants {
 };
 
 std::vector<Block> blocks_of(const recorded::Recording& log, double full_W, double block_s,
-                             const Constants& body) {
+                             double air_error_K, const Constants& body) {
   const double lag_s = body.lag_s, second_s = body.second > 0.0 ? body.second_s : 0.0;
   std::vector<Block> blocks;
   Block block;
@@ -44,7 +44,16 @@ std::vector<Block> blocks_of(const recorded::Recording& log, double full_W, doub
       second_C = start_C = second_start_C = row.measured_C;
       second_later_K = later_start_K = late_W = later_W = 0.0;
       const bool is_cold = std::fabs(row.measured_C - row.air_C) < 5.0;
-      settled_s = row.t_s + 3.0 * (is_cold || !(second_s > 0.0) ? lag_s : second_s);
+      // As the monitor waits: until a wrong start is off by no more than a quarter of what wrong air does.
+      const double tolerable_W = std::max(0.25 * body.loss * air_error_K, 0.01 * full_W);
+      const auto settles_s = [&](double seconds, double error_W) {
+        return seconds * std::max(0.0, std::log(error_W / tolerable_W));
+      };
+      settled_s = row.t_s + settles_s(lag_s, full_W);
+      if (!is_cold && second_s > 0.0)
+        settled_s =
+            std::max(settled_s, row.t_s + settles_s(second_s, body.second / second_s * 2.0 *
+                                                                  std::fabs(row.measured_C - row.air_C)));
       block = Block();
       last_C = row.measured_C;
       continue;
@@ -101,7 +110,7 @@ double missed_K2(const recorded::Recording& log, double full_W, const Constants&
 }
 
 /// Goes along each constant in turn, by a factor that shrinks, while that helps.
-/// @param slowest_s  of the second mass: the monitor waits three of it after a warm start
+/// @param slowest_s  of the second mass: the monitor waits for it after a warm start
 Constants fitted(const recorded::Recording& log, double full_W, double slowest_s, Constants body) {
   double Constants::*const all[] = {&Constants::capacity, &Constants::loss,     &Constants::lag_s,
                                     &Constants::second,   &Constants::second_s, &Constants::fan};
@@ -134,22 +143,32 @@ double residual_J(const Block& block, const Constants& body) {
          body.loss * block.rise_Ks - body.fan * block.fan_Ks;
 }
 
-/// Noise that residuals of the blocks have, as noise of the readings: a log says less of the power than the firmware knows.
-double block_noise_K(const std::vector<Block>& blocks, const Constants& body) {
+/// Noise of the heat of one second, J: a log says less of the power than the firmware knows, so that the residuals of blocks jump by
+/// more than readings with this noise explain.
+double heat_noise_J(const std::vector<Block>& blocks, const Constants& body, double noise_K, double block_s) {
   std::vector<double> jumps_J;
   for (std::size_t i = 1; i < blocks.size(); ++i)
     if (blocks[i].is_judged && blocks[i - 1].is_judged && blocks[i].heat_J > 0.0)
       jumps_J.push_back(std::fabs(residual_J(blocks[i], body) - residual_J(blocks[i - 1], body)));
-  // 0.6745 of a normal deviation is the median; the difference of two residuals has the root of 2, and so has that of two readings.
-  return jumps_J.empty() ? 0.0 : recorded::median(jumps_J) / (0.6745 * 2.0 * body.capacity);
+  if (jumps_J.empty()) return 0.0;
+  // 0.6745 of a normal deviation is the median. In the difference of two residuals the reading between them counts twice.
+  const double jump_J = recorded::median(jumps_J) / 0.6745, read_J = body.capacity * noise_K;
+  return std::sqrt(std::max(0.0, 0.5 * (jump_J * jump_J - 6.0 * read_J * read_J)) / block_s);
 }
+
+/// The noise of a heater's log.
+struct Noise {
+  double reading_K, heat_J;  ///< Standard deviations: of a reading, and of the heat of one second.
+};
 
 /// The highest of both sums of the monitor's test, in nats, with all bounds times a factor.
 double evidence(const std::vector<Block>& blocks, const Constants& body, double factor, double air_error_K,
-                double noise_K, double limit_nat) {
+                const Noise& noise, double block_s, double limit_nat) {
   const Bounds usual;
   double more = 0.0, less = 0.0, highest = 0.0;
-  const double sigma_J = std::sqrt(2.0) * body.capacity * noise_K;
+  const double reading_J = std::sqrt(2.0) * body.capacity * noise.reading_K,
+               heat_J = noise.heat_J * std::sqrt(block_s),
+               nat_per_J = 0.5 / (reading_J / std::sqrt(limit_nat) + heat_J);
   for (const Block& block : blocks) {
     if (!block.is_judged) continue;
     const double second = body.second * block.second_K, second_later = body.second * block.second_later_K;
@@ -159,10 +178,10 @@ double evidence(const std::vector<Block>& blocks, const Constants& body, double 
                   usual.second * (std::fabs(second) + std::fabs(second - second_later)) +
                   usual.loss * std::fabs(body.loss * block.rise_Ks) +
                   usual.fan * std::fabs(body.fan * block.fan_Ks)) +
-        (body.loss + body.fan) * air_error_K * block.length_s;
+        (body.loss + (block.fan_Ks > 0.0 ? body.fan : 0.0)) * air_error_K * block.length_s + 0.25 * heat_J;
     const auto add = [&](double& sum, double beyond_J) {
-      const double z = beyond_J / sigma_J;
-      sum = std::max(0.0, sum + std::min(0.5 * z - 0.125, 0.5 * limit_nat));
+      const double step = std::max(-0.5 * limit_nat, std::min(0.5 * limit_nat, beyond_J * nat_per_J));
+      sum = std::max(0.0, sum + step);
       highest = std::max(highest, sum);
     };
     add(more, residual_J(block, body) - allowed_J);
@@ -186,7 +205,7 @@ int calibrate(const std::string& file, double full_W, double highest_C, double a
   std::sort(changes_K.begin(), changes_K.end());
   const double row_s = recorded::median(steps_s), resolution_K = changes_K[changes_K.size() / 10];
   // 0.6745 of a normal deviation is the median; a second difference has the square root of 6.
-  double noise_K = std::max(recorded::median(bends_K) / (0.6745 * std::sqrt(6.0)), 0.5 * resolution_K);
+  Noise noise = {std::max(recorded::median(bends_K) / (0.6745 * std::sqrt(6.0)), 0.5 * resolution_K), 0.0};
   // A guess: it forgets a change within some minutes, and a hold needs a share of the power.
   double hottest_K = 1.0, mean_duty = 0.0;
   for (const recorded::Row& row : log.rows) {
@@ -205,13 +224,16 @@ int calibrate(const std::string& file, double full_W, double highest_C, double a
   // A second mass has to be worth it.
   if (missed_K2(log, full_W, body) > 0.8 * missed_K2(log, full_W, alone)) body = alone;
   if (body.lag_s < 0.2 * row_s) body.lag_s = 0.2 * row_s;
-  const double block_s = std::min(40.0, std::max({10.0 * row_s, body.lag_s, 1.0}));
-  const std::vector<Block> blocks = blocks_of(log, full_W, block_s, body);
-  noise_K = std::max(noise_K, block_noise_K(blocks, body));
+  // Ten rows or seconds, half of the lag; a second mass must settle within the monitor's 255 blocks.
+  const double block_s = std::min(40.0, std::max({std::min(10.0 * row_s, 10.0), 5.0 * row_s, 0.5 * body.lag_s,
+                                                  body.second > 0.0 ? body.second_s / 50.0 : 0.0, 1.0}));
+  const std::vector<Block> blocks = blocks_of(log, full_W, block_s, air_error_K, body);
+  noise.heat_J = heat_noise_J(blocks, body, noise.reading_K, block_s);
   const double limit_nat = std::log(1000.0 * 3600.0 * 2.0 / block_s);
   double factor = 1.0;
   // Half of the evidence that alarms is left for what this log does not show.
-  while (evidence(blocks, body, factor, air_error_K, noise_K, limit_nat) > 0.5 * limit_nat && factor < 5.0)
+  while (evidence(blocks, body, factor, air_error_K, noise, block_s, limit_nat) > 0.5 * limit_nat &&
+         factor < 5.0)
     factor *= 1.1;
   const Bounds usual;
   const auto bound = [&](double fraction) { return std::min(0.5, factor * fraction); };
@@ -229,13 +251,14 @@ int calibrate(const std::string& file, double full_W, double highest_C, double a
       "            %.6g, %.3f,        // W/K to the air\n"
       "            %.6g, %.3f,        // W/K of the full fan\n"
       "            %.2f,              // K that the air may be off\n"
-      "            %.4f, %.4f};       // K of noise and resolution\n"
+      "            %.4f, %.4f,        // K of noise and resolution\n"
+      "            %.4f};             // J of noise of a second's heat\n"
       "  }\n"
       "  static constexpr float highest_C() { return %.1ff; }\n"
       "};\n",
       block_s, full_W, bound(usual.heat), body.capacity, bound(usual.capacity), body.second, body.second_s,
       bound(usual.second), body.lag_s, bound(usual.lag), body.loss, bound(usual.loss), body.fan,
-      bound(usual.fan), air_error_K, noise_K, resolution_K, highest_C);
+      bound(usual.fan), air_error_K, noise.reading_K, resolution_K, noise.heat_J, highest_C);
   return 0;
 }
 

@@ -20,10 +20,20 @@ namespace {
 
 namespace tp = thermopower;
 
-enum class Fault { none, thermistor_loose, thermistor_stuck, heater_weak, fan_lost, room_warmer };
+enum class Fault {
+  none,
+  thermistor_loose,
+  thermistor_stuck,
+  heater_weak,
+  heater_weak_on_start,  ///< From a heat-up on, as after a night.
+  fan_lost,
+  fan_lost_unlogged,  ///< A third of the loss is gone: a fan that no column shows, such as a hotend's own.
+  room_warmer
+};
 const char* name(Fault fault) {
   static const char* const names[] = {
-      "none", "thermistor loose", "thermistor stuck", "heater 20 % weaker", "fan lost", "room 15 K warmer"};
+      "none",     "thermistor loose",   "thermistor stuck", "heater 20 % weaker", "same, from heat-up",
+      "fan lost", "fan lost, unlogged", "room 15 K warmer"};
   return names[static_cast<int>(fault)];
 }
 uint8_t truth(Fault fault) {
@@ -34,9 +44,12 @@ uint8_t truth(Fault fault) {
     case Fault::thermistor_stuck:
       return static_cast<uint8_t>(tp::Suspect::thermometer);
     case Fault::heater_weak:
+    case Fault::heater_weak_on_start:
       return static_cast<uint8_t>(tp::Suspect::heater);
     case Fault::fan_lost:
       return static_cast<uint8_t>(tp::Suspect::fan);
+    case Fault::fan_lost_unlogged:
+      return static_cast<uint8_t>(tp::Suspect::loss);
     case Fault::room_warmer:
       return static_cast<uint8_t>(tp::Suspect::air);
   }
@@ -51,8 +64,15 @@ bool is_read(double celsius) {
   return celsius > 2.0 && celsius < static_cast<double>(Calibrated::highest_C());
 }
 
+/// Rows at which faults begin.
+struct Begins {
+  std::vector<std::size_t> holds;     ///< A minute into each hold.
+  std::vector<std::size_t> heat_ups;  ///< Heating begins, to a hold 15 K and more above.
+};
+
 /// The target that the log has, or else the level of the hold that the heater is in or goes to: of a minute within 3 K.
-std::vector<double> targets_of(const recorded::Recording& log, std::vector<std::size_t>& holds) {
+std::vector<double> targets_of(const recorded::Recording& log, Begins& begins) {
+  std::vector<std::size_t>& holds = begins.holds;
   const std::vector<recorded::Row>& rows = log.rows;
   std::vector<double> level(rows.size(), std::nan(""));
   for (std::size_t i = 0, j = 0; i < rows.size(); ++i) {
@@ -78,6 +98,10 @@ std::vector<double> targets_of(const recorded::Recording& log, std::vector<std::
     if (level[i] == level[i]) next_C = level[i];
     target[i] = log.has_target ? rows[i].target_C : (next_C == next_C ? next_C : 0.0);
   }
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if ((i == 1 || target[i] != target[i - 1]) && is_read(rows[i].measured_C) &&
+        target[i] > rows[i].measured_C + 15.0)
+      begins.heat_ups.push_back(i);
   return target;
 }
 
@@ -109,12 +133,14 @@ public:
       if (wanted == duty || (wanted - duty) * read_K_ > 0.0)
         sum_ += gain * read_K_ * dt_s / (8.0 * (body().lag_s + dt_s));
     }
-    const double heat_W = body().full_W * ((fault_ == Fault::heater_weak ? 0.8 : 1.0) * duty - before.duty);
+    const bool is_weak = fault_ == Fault::heater_weak || fault_ == Fault::heater_weak_on_start;
+    const double heat_W = body().full_W * ((is_weak ? 0.8 : 1.0) * duty - before.duty);
     late_W_ += dt_s / (body().lag_s + dt_s) * (heat_W - late_W_);
-    const double loss =
-        body().loss_W_per_K + (fault_ == Fault::fan_lost ? 0.0 : body().fan_W_per_K * before.fan);
-    double gained_W = late_W_ - loss * body_K_;
-    if (fault_ == Fault::fan_lost) gained_W += body().fan_W_per_K * before.fan * (measured_C - before.air_C);
+    const double lost = fault_ == Fault::fan_lost            ? body().fan_W_per_K * before.fan
+                        : fault_ == Fault::fan_lost_unlogged ? body().loss_W_per_K / 3.0
+                                                             : 0.0;
+    const double loss = body().loss_W_per_K + body().fan_W_per_K * before.fan - lost;
+    double gained_W = late_W_ - loss * body_K_ + lost * (measured_C - before.air_C);
     if (fault_ == Fault::room_warmer) gained_W += loss * 15.0;
     const double warmer_K =
         body().second_J_per_K > 0.0 ? dt_s / (body().second_s + dt_s) * (body_K_ - second_K_) : 0.0;
@@ -206,12 +232,12 @@ int replay(int count, char** files) {
   long alarms = 0, behind = 0;
   std::vector<recorded::Recording> logs;
   std::vector<std::vector<double>> targets;
-  std::vector<std::vector<std::size_t>> holds;
+  std::vector<Begins> begins;
   std::printf("%-40s %6s %6s %8s %6s %s\n", "log", "hours", "judged", "refused", "alarms", "usual checks");
   for (int i = 0; i < count; ++i) {
     logs.push_back(recorded::read(files[i]));
-    holds.emplace_back();
-    targets.push_back(targets_of(logs.back(), holds.back()));
+    begins.emplace_back();
+    targets.push_back(targets_of(logs.back(), begins.back()));
     const Outcome healthy = run(logs.back(), targets.back(), Fault::none, -1e12);
     const bool is_alarm = healthy.alarm_s >= 0.0;
     alarms += is_alarm ? 1 : 0;
@@ -232,9 +258,11 @@ int replay(int count, char** files) {
     std::vector<double> watch_s, usual_s[3];
     long named = 0, found = 0;
     for (std::size_t log = 0; log < logs.size(); ++log)
-      for (const std::size_t hold : holds[log]) {
-        if (fault == Fault::fan_lost && !(logs[log].rows[hold].fan > 0.0)) continue;
-        const Outcome outcome = run(logs[log], targets[log], fault, logs[log].rows[hold].t_s);
+      for (const std::size_t at :
+           fault == Fault::heater_weak_on_start ? begins[log].heat_ups : begins[log].holds) {
+        const recorded::Row& row = logs[log].rows[at];
+        if (fault == Fault::fan_lost && !(row.fan > 0.0)) continue;
+        const Outcome outcome = run(logs[log], targets[log], fault, row.t_s);
         watch_s.push_back(outcome.watch_s);
         for (int k = 0; k < 3; ++k) usual_s[k].push_back(outcome.usual_s[k]);
         if (outcome.watch_s < 0.0) continue;
@@ -243,7 +271,7 @@ int replay(int count, char** files) {
       }
     std::printf("%-20s", name(fault));
     if (watch_s.empty()) {
-      std::printf(" no hold in the logs to put it in\n");
+      std::printf(" nothing in the logs to put it in\n");
       continue;
     }
     print_times(watch_s);

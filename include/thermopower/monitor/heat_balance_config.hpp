@@ -38,13 +38,17 @@ struct HeatBalanceConfig {
   double noise_K;       ///< Standard deviation of the thermometer, its resolution included; above 0.
   double
       resolution_K;  ///< The thermometer's smallest step; a reading that never steps is stuck where this is below the noise.
+  /// Standard deviation of what the heat of one second is off at random, J; grows with the root of the time. Small where
+  /// the firmware knows its own duty; large in a log that shows a duty once a second that changes more often.
+  double heat_noise_J;
 
   /// The same with every bound replaced.
   /// @param error  a fraction for heat, capacities, lag and losses
   constexpr HeatBalanceConfig within(double error) const noexcept {
     return HeatBalanceConfig{
-        full_W,       error, capacity_J_per_K, error, second_J_per_K, second_s, error,       lag_s, error,
-        loss_W_per_K, error, fan_W_per_K,      error, air_error_K,    noise_K,  resolution_K};
+        full_W,  error,        capacity_J_per_K, error, second_J_per_K, second_s, error,
+        lag_s,   error,        loss_W_per_K,     error, fan_W_per_K,    error,    air_error_K,
+        noise_K, resolution_K, heat_noise_J};
   }
 
   /// Of two nodes, the heated one unmeasured: a motor with a thermometer on its housing.
@@ -67,7 +71,8 @@ struct HeatBalanceConfig {
                              0.0,
                              1.0,
                              noise_K,
-                             noise_K}
+                             noise_K,
+                             0.0}
         .within(error);
   }
   /// Of two nodes, the heated one measured: a winding whose resistance is its thermometer, a heated plate under glass.
@@ -91,7 +96,8 @@ struct HeatBalanceConfig {
         0.0,
         1.0,
         noise_K,
-        noise_K}
+        noise_K,
+        0.0}
         .within(error);
   }
 };

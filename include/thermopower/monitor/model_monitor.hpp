@@ -45,10 +45,11 @@ struct NoBalance {
   bool add(Sums&, const MonitorInputs&, uint16_t) noexcept {
     return true;
   }
-  void close(uint8_t) noexcept {}
+  void close() noexcept {}
   template <class Sums>
   void close(const Sums&, uint8_t, uint16_t) noexcept {}
   void judge(uint8_t) noexcept {}
+  void finish(uint8_t) noexcept {}
   void restart() noexcept {}
   Disagreement disagreement(uint8_t) const noexcept { return Disagreement::none; }
   uint8_t suspects() const noexcept { return 0; }
@@ -132,9 +133,11 @@ public:
     if (is_turn_of_winding()) winding_.add(sums_, inputs, static_cast<uint16_t>(ticks));
     else motion_.add(sums_, inputs, static_cast<uint16_t>(ticks));
     ticks_ = static_cast<uint16_t>(ticks_ + ticks);
-    if (ticks_ >= block) close(limit);
+    const bool is_full = ticks_ >= block;
+    if (is_full) heat_.finish(limit);
     else heat_.judge(limit);
     decide(limit);
+    if (is_full) close(limit);
     return disagreement();
   }
   /// Which balance disagrees, and which way.
@@ -245,7 +248,7 @@ private:
     return !has_motion() || (has_winding() && (found_ & 0x80u) == 0);
   }
   void close(uint8_t limit) noexcept {
-    heat_.close(limit);
+    heat_.close();
     if (is_turn_of_winding()) winding_.close(sums_, limit, ticks_);
     else motion_.close(sums_, limit, ticks_);
     sums_.clear();

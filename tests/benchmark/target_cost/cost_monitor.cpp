@@ -13,7 +13,7 @@ namespace {
 struct Hotend {
   static constexpr tp::MonitorConfig monitor() { return {8.0, 1000.0, true}; }
   static constexpr tp::HeatBalanceConfig heat_balance() {
-    return {40.0, 0.06, 14.0, 0.06, 4.0, 90.0, 0.15, 4.0, 0.15, 0.13, 0.06, 0.07, 0.1, 5.0, 0.15, 0.05};
+    return {40.0, 0.06, 14.0, 0.06, 4.0, 90.0, 0.15, 4.0, 0.15, 0.13, 0.06, 0.07, 0.1, 5.0, 0.15, 0.05, 0.2};
   }
 };
 /// A motor with a thermometer on its housing, measured current, voltage and speed.

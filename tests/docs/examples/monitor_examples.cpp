@@ -19,13 +19,14 @@ struct Bed {
     return {10.0, 1000.0, true};
   }  // block s, false alarm h, cuts
   static constexpr tp::HeatBalanceConfig heat_balance() {
-    return {220.0, 0.05,         // W at full duty, off by 5 %
-            900.0, 0.05,         // J/K that follow the thermometer
-            0.0,   0.0,  0.0,    // no second mass
-            5.0,   0.15,         // s until heat shows
-            1.5,   0.06,         // W/K to the air
-            0.0,   0.0,          // no fan
-            3.0,   0.1,  0.05};  // K: air, noise, resolution
+    return {220.0, 0.05,        // W at full duty, off by 5 %
+            900.0, 0.05,        // J/K that follow the thermometer
+            0.0,   0.0,  0.0,   // no second mass
+            5.0,   0.15,        // s until heat shows
+            1.5,   0.06,        // W/K to the air
+            0.0,   0.0,         // no fan
+            3.0,   0.1,  0.05,  // K: air, noise, resolution
+            1.0};               // J by which the heat of a second is off at random
   }
 };
 //! [heater monitor]

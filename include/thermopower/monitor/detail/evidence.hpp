@@ -6,12 +6,12 @@
 #include "binary_scale.hpp"
 
 /// @file monitor/detail/evidence.hpp
-/// The sequential test of a balance: two cumulative sums of log-likelihood ratios, one a direction.
+/// The sequential test of a balance: two cumulative sums of residuals beyond their bounds, one a direction.
 
 namespace thermopower {
 namespace detail {
 
-/// Counts of evidence in a nat. The sum of a healthy plant reaches `n` nats in one block of exp(n).
+/// Counts of evidence in a nat. The sum of a healthy plant reaches `n` nats in at most one block of exp(n).
 constexpr int evidence_per_nat() { return 8; }
 
 /// Nats at which sums of a balance alarm, so that of all `tests` in one block of `block_s` at most one in
@@ -32,21 +32,16 @@ struct Evidence {
   bool is_none() const noexcept { return more == 0 && less == 0; }
 
   /// A block's residual.
-  /// @param residual   what the balance lacks  @param allowed  how much of that the bounds explain
-  /// @param per_count  half of evidence_per_nat() over the residual's standard deviation
+  /// @param residual   what the balance lacks
+  /// @param allowed    how much of that the bounds explain, and what keeps white noise from adding up: for a residual
+  ///                   with white noise of standard deviation s, s / 4 more
+  /// @param per_count  evidence of a count beyond that: for the same noise evidence_per_nat() / (2 s)
   /// @param limit      where the sums alarm; a block adds at most half of it
   [[gnu::always_inline]] void add(int16_t residual, uint16_t allowed, BinaryScale per_count,
                                   uint8_t limit) noexcept {
-    const uint16_t size = size_of(residual);
     const uint8_t most = static_cast<uint8_t>(limit / 2 + 1);
-    // ln of the likelihood of "half a standard deviation beyond the bounds" over "at the bounds": z / 2 - 1/8.
-    const int32_t nats =
-        times(static_cast<int32_t>(size) - static_cast<int32_t>(allowed), per_count) - evidence_per_nat() / 8;
-    const int8_t step =
-        static_cast<int8_t>(nats > most ? most : (nats < -static_cast<int32_t>(most) ? -most : nats));
-    // The other direction is that far on the other side of its bound.
-    more = moved(more, residual > 0 ? step : static_cast<int8_t>(-most), limit);
-    less = moved(less, residual < 0 ? step : static_cast<int8_t>(-most), limit);
+    more = moved(more, step(static_cast<int32_t>(residual) - allowed, per_count, most), limit);
+    less = moved(less, step(-static_cast<int32_t>(residual) - allowed, per_count, most), limit);
     if (is_none()) since = 0;
     else if (since < 255) ++since;
   }
@@ -61,6 +56,11 @@ struct Evidence {
   }
 
 private:
+  static int8_t step(int32_t beyond, BinaryScale per_count, uint8_t most) noexcept {
+    const int32_t counts = times(beyond, per_count);
+    return static_cast<int8_t>(counts > most ? most
+                                             : (counts < -static_cast<int32_t>(most) ? -most : counts));
+  }
   static uint8_t moved(uint8_t sum, int8_t step, uint8_t limit) noexcept {
     const int16_t to = static_cast<int16_t>(static_cast<int16_t>(sum) + step);
     return to < 0 ? uint8_t(0) : (to > limit ? limit : static_cast<uint8_t>(to));

@@ -102,6 +102,8 @@ class HeatBalance : FanSum<(Plant::heat_balance().fan_W_per_K > 0.0)>,
   static_assert(config().noise_K > 0.0, "thermopower: heat_balance(): noise_K must be above 0");
   static_assert(config().resolution_K >= 0.0,
                 "thermopower: heat_balance(): resolution_K must not be negative");
+  static_assert(config().heat_noise_J >= 0.0,
+                "thermopower: heat_balance(): heat_noise_J must not be negative");
   // Of the plant itself, so that the compiler asks once.
   static constexpr bool has_fan = Plant::heat_balance().fan_W_per_K > 0.0;
   static constexpr bool has_second = Plant::heat_balance().second_J_per_K > 0.0;
@@ -141,10 +143,14 @@ public:
     return true;
   }
 
-  /// Ends a block; `judge()` then weighs it in the next steps. @param limit  where the evidence alarms
-  void close(uint8_t limit) noexcept {
+  /// Does what is left of the work on the last block: a loop may be so slow that it has few steps in a block.
+  /// @param limit  where the evidence alarms
+  void finish(uint8_t limit) noexcept {
+    while (is_judging()) judge(limit);
+  }
+  /// Ends a block; `judge()` then weighs it in the next steps. Call `finish()` before.
+  void close() noexcept {
     constexpr BinaryScale loss = loss_scale(), fan = fan_scale();
-    while (is_judging()) judge(limit);                            // a loop so slow that it never came to it
     heat_in_ = upper(static_cast<int32_t>(heat_));                // 1/256 s of full heat, as all that follows
     residual_ = saturated(static_cast<int32_t>(last_) - start_);  // what balance() begins with
     lost_ = saturated(times(rise_, loss));
@@ -252,15 +258,30 @@ private:
   }
   static constexpr BinaryScale lag_scale() { return binary_scale(config().lag_s / block_s()); }
   // Noise of the difference of two readings, as heat; never below what rounding leaves.
-  static constexpr double noise() {
+  static constexpr double reading_noise() {
     return at_least(362.0 * config().capacity_J_per_K / full_W() * config().noise_K, 4.0);
   }
+  // Of the heat of a block.
+  static constexpr double heat_noise() {
+    return 256.0 * config().heat_noise_J / full_W() * square_root(block_s());
+  }
+  static constexpr double noise() { return square_root(squared(reading_noise()) + squared(heat_noise())); }
+  static constexpr double square_root(double x) { return constexpr_pow(x, 0.5); }
   static constexpr double at_least(double value, double bound) { return value > bound ? value : bound; }
-  static constexpr BinaryScale evidence_scale() { return binary_scale(0.5 * evidence_per_nat() / noise()); }
-  static constexpr uint16_t air_allowance() {
-    return static_cast<uint16_t>((config().loss_W_per_K + config().fan_W_per_K) / full_W() *
-                                     config().air_error_K * block_s() * 256.0 +
-                                 4.0);  // and what rounding leaves
+  // Noise of readings does not add up: of the sum over any blocks the first and the last reading are left. So of
+  // n blocks none alarms falsely in exp(L) where the sum may be 2 sqrt(L) of it; white noise of the heat needs 2 L.
+  static constexpr double least_limit_nat() {
+    return evidence_limit_nat(Plant::monitor().false_alarm_h, block_s(), 2.0);
+  }
+  static constexpr BinaryScale evidence_scale() {
+    return binary_scale(0.5 * evidence_per_nat() /
+                        (reading_noise() / square_root(least_limit_nat()) + heat_noise()));
+  }
+  static constexpr uint16_t air_part(double loss_W_per_K) {
+    return static_cast<uint16_t>(loss_W_per_K / full_W() * config().air_error_K * block_s() * 256.0 + 0.5);
+  }
+  static constexpr uint16_t air_allowance() {  // what rounding leaves, and what white noise may be
+    return static_cast<uint16_t>(air_part(config().loss_W_per_K) + 4.0 + 0.25 * heat_noise());
   }
   static constexpr uint16_t air_step() {
     return static_cast<uint16_t>(config().loss_W_per_K / full_W() * 4.0 * block_s() * 256.0 + 1.0);
@@ -268,19 +289,40 @@ private:
   static constexpr int16_t full_block() {
     return static_cast<int16_t>(block_s() * 256.0 * config().full_W / full_W());
   }
-  static constexpr uint8_t settling_blocks(double seconds) {
-    return seconds / block_s() > 80.0 ? uint8_t(255) : static_cast<uint8_t>(3.0 * seconds / block_s() + 2.0);
+  // Heat by which a start may be wrong: no more than a quarter of what wrong air does, or a hundredth of the highest.
+  static constexpr double tolerable_W() {
+    return at_least(0.25 * config().loss_W_per_K * config().air_error_K, 0.01 * config().full_W);
+  }
+  // Blocks in which an error of the start falls to what is tolerable; below 0 where it is less from the beginning.
+  static constexpr int16_t settling_blocks(double seconds, double error_W) {
+    return static_cast<int16_t>(within(seconds / block_s() * constexpr_log(error_W / tolerable_W()), 255.0));
+  }
+  static constexpr double within(double value, double bound) {
+    return value > bound ? bound : (value < -bound ? -bound : value);
+  }
+  static constexpr double second_W_per_K() {
+    return has_second ? config().second_J_per_K / config().second_s : 1.0;
   }
 
   void start(int16_t now, int16_t rise) noexcept {
     flags_ |= has_start | is_flat;
     start_ = last_ = now;
     set_second_of(this, now);
+    // How much heat is on its way nobody knows.
+    constexpr int16_t for_lag = settling_blocks(config().lag_s, config().full_W);
+    int16_t blocks = for_lag;
     // As warm as the air, the second mass is where the first is; otherwise it may be anywhere between.
     const bool is_cold = rise < 5 * 64 && rise > -5 * 64;
-    constexpr uint8_t for_lag = settling_blocks(config().lag_s),
-                      for_second = settling_blocks(config().second_s);
-    settling_ = is_cold || !has_second ? for_lag : for_second;
+    if (has_second && !is_cold) {
+      constexpr int16_t of_1_K = settling_blocks(config().second_s, second_W_per_K()),
+                        of_a_doubling =
+                            static_cast<int16_t>(settling_blocks(config().second_s, 2.0 * tolerable_W()) + 1);
+      int16_t for_second = of_1_K;
+      for (uint16_t left_K = size_of(rise) >> 6; left_K != 0; left_K >>= 1)
+        for_second = static_cast<int16_t>(for_second + of_a_doubling);
+      if (for_second > blocks) blocks = for_second;
+    }
+    settling_ = blocks > 253 ? uint8_t(255) : (blocks < 0 ? uint8_t(2) : static_cast<uint8_t>(blocks + 2));
   }
   static void set_second_of(SecondMass<true>* mass, int16_t now) noexcept {
     mass->whole = now;
@@ -309,8 +351,10 @@ private:
     allow(stored, stored_error);
     allow(lost_, loss_error);
     int32_t rest = static_cast<int32_t>(heat_in_) - stored - lost_ - flow_into(this, change);
-    if (has_fan) {
+    if (has_fan && Fan::blown() != 0) {
+      constexpr uint16_t air = air_part(config().fan_W_per_K);
       allow(Fan::blown(), fan_error);
+      allowed_ = static_cast<uint16_t>(allowed_ + air);
       rest -= Fan::blown();
     }
     residual_ = saturated(rest);

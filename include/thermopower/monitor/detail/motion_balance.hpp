@@ -82,11 +82,12 @@ public:
       constexpr uint8_t torque_error = fraction(config().torque_error),
                         inertia_error = fraction(config().inertia_error),
                         friction_error = fraction(config().friction_error);
+      constexpr uint16_t least = static_cast<uint16_t>(4u + quarter_noise());
       const int16_t drive = upper(sums.first_sum);
       const int16_t gained =
           saturated(times(sums.at_last - static_cast<int16_t>(size_of(sums.at_first)), inertia));
       const int16_t friction = saturated(times(ticks, dry) + times(upper(sums.second_sum), damping));
-      const uint32_t allowed = static_cast<uint32_t>(times(ticks, load)) + 4u + part(drive, torque_error) +
+      const uint32_t allowed = static_cast<uint32_t>(times(ticks, load)) + least + part(drive, torque_error) +
                                part(gained, inertia_error) + part(friction, friction_error);
       evidence_.add(saturated(static_cast<int32_t>(drive) - gained - friction),
                     static_cast<uint16_t>(allowed > 32000u ? 32000u : allowed), per_count, limit);
@@ -123,10 +124,12 @@ private:
   static constexpr BinaryScale damping_scale() {
     return binary_scale(config().damping_Nm_s_per_rad * full_rate() / full_Nm());
   }
-  static constexpr double noise() { return config().noise_Nm / full_Nm() * Plant::monitor().block_s * 256.0; }
-  static constexpr BinaryScale evidence_scale() {
-    return binary_scale(0.5 * evidence_per_nat() / (noise() > 4.0 ? noise() : 4.0));
+  static constexpr double told_noise() {
+    return config().noise_Nm / full_Nm() * Plant::monitor().block_s * 256.0;
   }
+  static constexpr double noise() { return told_noise() > 4.0 ? told_noise() : 4.0; }
+  static constexpr uint16_t quarter_noise() { return static_cast<uint16_t>(0.25 * noise() + 0.5); }
+  static constexpr BinaryScale evidence_scale() { return binary_scale(0.5 * evidence_per_nat() / noise()); }
   static constexpr uint8_t fraction(double error) { return static_cast<uint8_t>(error * 256.0 + 0.999); }
 
   Evidence evidence_;

@@ -78,7 +78,7 @@ public:
   /// Closes a block. @param limit  where the sums alarm
   void close(const TurnSums& sums, uint8_t limit) noexcept {
     if (sums.at_first != no_count()) {
-      constexpr uint16_t at_no_load = offset();
+      constexpr uint16_t at_no_load = static_cast<uint16_t>(offset() + quarter_noise());
       constexpr uint8_t share_off = part_off();
       constexpr BinaryScale per_count = evidence_scale();
       const int16_t drop = upper(sums.second_sum);
@@ -112,10 +112,11 @@ private:
   }
   static constexpr double block() { return Plant::monitor().block_s * 256.0 / full_V(); }
   static constexpr uint16_t offset() { return static_cast<uint16_t>(config().offset_V * block() + 4.0); }
-  static constexpr BinaryScale evidence_scale() {
-    return binary_scale(0.5 * evidence_per_nat() /
-                        (config().noise_V * block() > 4.0 ? config().noise_V * block() : 4.0));
+  static constexpr double noise() {
+    return config().noise_V * block() > 4.0 ? config().noise_V * block() : 4.0;
   }
+  static constexpr uint16_t quarter_noise() { return static_cast<uint16_t>(0.25 * noise() + 0.5); }
+  static constexpr BinaryScale evidence_scale() { return binary_scale(0.5 * evidence_per_nat() / noise()); }
 
   Evidence evidence_;
 };
