@@ -12,7 +12,7 @@ thermopower_version(${root} version)
 
 set(package ${OUT}/thermopower)
 file(REMOVE_RECURSE ${package})
-file(COPY ${root}/include/thermopower/air_celsius.hpp ${root}/include/thermopower/measured_temperature.hpp ${root}/include/thermopower/supply_range.hpp ${root}/include/thermopower/config_error.hpp ${root}/include/thermopower/config_record.hpp ${root}/include/thermopower/run_record.hpp ${root}/include/thermopower/thermopower.hpp
+file(COPY ${root}/include/thermopower/air_celsius.hpp ${root}/include/thermopower/measured_temperature.hpp ${root}/include/thermopower/step_time.hpp ${root}/include/thermopower/supply_range.hpp ${root}/include/thermopower/config_error.hpp ${root}/include/thermopower/config_record.hpp ${root}/include/thermopower/run_record.hpp ${root}/include/thermopower/thermopower.hpp
           ${root}/include/thermopower/version.hpp
      DESTINATION ${package}/src/thermopower)
 foreach(part actuator control detail fixed_point monitor motors sbgc)

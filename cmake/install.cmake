@@ -10,7 +10,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/thermopower)
 # The firmware floor is a package of its own: whoever takes only that needs no Eigen.
 install(TARGETS thermopower EXPORT thermopowerTargets)
 install(EXPORT thermopowerTargets NAMESPACE thermopower:: DESTINATION ${package_dir} COMPONENT headers)
-install(FILES include/thermopower/air_celsius.hpp include/thermopower/measured_temperature.hpp include/thermopower/supply_range.hpp
+install(FILES include/thermopower/air_celsius.hpp include/thermopower/measured_temperature.hpp include/thermopower/step_time.hpp include/thermopower/supply_range.hpp
               include/thermopower/config_error.hpp include/thermopower/config_record.hpp include/thermopower/run_record.hpp include/thermopower/thermopower.hpp
               include/thermopower/version.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers)

@@ -67,5 +67,6 @@
 #include "sbgc/codec.hpp"
 #include "sbgc/poller.hpp"
 #include "sbgc/power_and_gain.hpp"
+#include "step_time.hpp"
 #include "supply_range.hpp"
 #include "version.hpp"

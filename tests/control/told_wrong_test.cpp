@@ -54,6 +54,12 @@ struct Undeclared {
   static Thermal::Config thermal() { return Motor::thermal(); }
 };
 
+/// The same in a loop of 10 ms.
+template <class Driven>
+struct InALoop : Driven {
+  static StepTime step_time() { return {0.005f}; }
+};
+
 typedef CertifiedLimiter<CertifiedTwoNode> Proven;
 typedef AxisController<Motor> Plain;
 typedef AxisController<Motor, StepPowerLaw<>, NodeLimiter> Nodes;
@@ -265,6 +271,39 @@ TEST_CASE("resets while the motor is hot") {
   CHECK(hour<Nodes>(remember).over_K < 0.5);
   // An estimate that nobody sets is the air, as AxisController::start() says: a program that resets needs a memory.
   CHECK(hour<Plain>(forget).over_K > 0.0);
+}
+
+TEST_CASE("a time that is told ten times too short is a fault where the motor declares its shortest step") {
+  const auto tenth = [](double, Told& told, auto&) { told.dt_s = 0.1f * static_cast<float>(step_s); };
+  const auto now_and_then = [](double now_s, Told& told, auto&) {
+    if (tick(now_s) % 3 != 0) told.dt_s = 0.1f * static_cast<float>(step_s);
+  };
+  const auto from_then_on = [](double now_s, Told& told, auto&) {
+    if (now_s > 600.0) told.dt_s = 0.1f * static_cast<float>(step_s);
+  };
+  const auto check = [](const Outcome& outcome, double most_over_K) {
+    CHECK(outcome.over_K < most_over_K);
+    CHECK(outcome.last == LimitReason::time_invalid);
+  };
+  check(hour<AxisController<InALoop<Undeclared>>>(tenth), 0.0);
+  check(hour<AxisController<InALoop<Motor>>>(tenth), 0.0);
+  check(hour<AxisController<InALoop<Motor>, StepPowerLaw<>, NodeLimiter>>(tenth), 0.0);
+  check(hour<AxisController<InALoop<Motor>, StepPowerLaw<>, Proven>>(tenth), 0.0);
+  check(hour<AxisController<InALoop<Motor>>>(from_then_on), 0.5);
+  check(hour<AxisController<InALoop<Motor>, StepPowerLaw<>, NodeLimiter>>(from_then_on), 0.5);
+  check(hour<AxisController<InALoop<Motor>, StepPowerLaw<>, Proven>>(from_then_on), 0.0);
+  CHECK(hour<AxisController<InALoop<Motor>>>(now_and_then).over_K < 0.5);
+  CHECK(hour<AxisController<InALoop<Motor>, StepPowerLaw<>, Proven>>(now_and_then).over_K < 0.0);
+}
+
+TEST_CASE(
+    "a declared shortest step costs a loop that keeps it nothing, and a clock that stands still in some steps neither") {
+  const auto right = [](double, Told&, auto&) {};
+  CHECK(hour<AxisController<InALoop<Motor>>>(right).mean_power == hour<Plain>(right).mean_power);
+  const auto slow_clock = [](double now_s, Told& told, auto&) {
+    told.dt_s = tick(now_s) % 3 == 0 ? 0.0f : 1.5f * static_cast<float>(step_s);
+  };
+  CHECK(!is_fault(hour<AxisController<InALoop<Motor>>>(slow_clock).last));
 }
 
 TEST_CASE("the errors that no firmware can see pass the limit as the page says") {

@@ -13,6 +13,7 @@ struct MyMotor {                                            // 12 ohm of copper,
   static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
   static tp::SupplyRange supply() { return {11.0f, 13.0f}; }
   static tp::AirRange air() { return {0.0f, 40.0f}; }       // one thermometer may lie: the warmest counts
+  static tp::StepTime step_time() { return {0.005f}; }      // no step is shorter: a time in a wrong unit is a fault
   static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }
 };
 typedef tp::AxisController<MyMotor> Axis;

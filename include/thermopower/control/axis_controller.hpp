@@ -4,6 +4,7 @@
 
 #include "../air_celsius.hpp"
 #include "../detail/check.hpp"
+#include "../step_time.hpp"
 #include "../supply_range.hpp"
 #include "detail/composition.hpp"
 #include "detail/policy_call.hpp"
@@ -23,7 +24,7 @@ namespace thermopower {
 /// follows.
 ///
 /// @tparam Motor     names `Current` and `Thermal` and gives their constants, and may declare its `supply()` and `air()`: `motors/`, or
-/// a struct of your own
+/// a struct of your own. It may also declare the shortest `step_time()` of its loop
 /// @tparam PowerLaw  how much power an error is worth: control/step_power_law.hpp
 /// @tparam Limiter   how the temperature is kept below its limit: control/safety_limiter.hpp
 /// @tparam Gain      how the P gain follows the power: control/gain_scheduler.hpp
@@ -180,15 +181,16 @@ public:
     if (is_started_ && state_.motor_C < air_C) start(air_C);
   }
 
-  /// One control cycle. @param dt_s  time since the last one, >= 0, from two readings of one clock: a time that is told too short is
-  /// believed, as nothing here has a clock of its own. An invalid one is a fault, and the motor warms as long as in the step before
+  /// One control cycle. @param dt_s  time since the last one, >= 0, from two readings of one clock. An invalid one, and one that is
+  /// shorter than the motor's `step_time()` declares, is a fault, and the motor warms as long as in the step before. Where the motor
+  /// declares none, a time that is told too short is believed
   const State& step(const Inputs& inputs, float dt_s) noexcept {
-    return decide(inputs, detail::not_a_number(), dt_s);
+    return decide(inputs, detail::not_a_number(), detail::PossibleTime<Motor>::of(dt_s));
   }
   /// The same for a law that asks where the axis stands, such as AdaptiveHoldingLaw.
   /// @param pose_deg  in degrees of the law's choice; NaN when it is not known
   const State& step(const Inputs& inputs, float pose_deg, float dt_s) noexcept {
-    return decide(inputs, pose_deg, dt_s);
+    return decide(inputs, pose_deg, detail::PossibleTime<Motor>::of(dt_s));
   }
   /// Whether the power law asks where the axis stands.
   static constexpr bool takes_pose() { return detail::TakesFacts<PowerLaw>::value; }

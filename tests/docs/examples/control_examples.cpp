@@ -170,6 +170,23 @@ TEST_CASE("the range of the air") {
   CHECK(read.step({0.5f, 12.0f, 20.0f, tp::LimitReason::none}, 0.03f).motor_C == Approx(35.0f).margin(0.01));
 }
 
+namespace {
+//! [step time]
+struct InALoop : Motor {
+  static tp::StepTime step_time() {
+    return {0.01f};
+  }  // of a loop of 30 ms; 3 ms is a wrong unit, or a wrong clock
+};
+//! [step time]
+}  // namespace
+
+TEST_CASE("the shortest step") {
+  tp::AxisController<InALoop, tp::StepPowerLaw<>, tp::SafetyLimiter<>, tp::NoGain> axis;
+  CHECK(axis.step({0.5f, 12.0f, 25.0f, tp::LimitReason::none}, 0.03f).reason == tp::LimitReason::none);
+  CHECK(axis.step({0.5f, 12.0f, 25.0f, tp::LimitReason::none}, 0.003f).reason ==
+        tp::LimitReason::time_invalid);
+}
+
 TEST_CASE("the range of a supply") {
   typedef tp::AxisController<Motor> Axis;
   //! [supply range]

@@ -220,8 +220,9 @@ public:
   uint8_t suspects() const noexcept {
     const bool is_stuck = sees_standstill && flat_ >= 2 && flat_ + 1 >= evidence_.since;
     if (is_stuck) return static_cast<uint8_t>(Suspect::thermometer);
-    // A thermometer that reads a constant share of the rise looks like a weak heater or, once it is steady, a larger loss.
-    const bool is_scale = evidence_.more >= evidence_.less ? (heater_ | loss_) != 0 : (heater_ & 0x7f) != 0;
+    // A thermometer that reads a constant share of the rise looks like a weak heater or, once it is steady, a larger loss or colder air.
+    const bool is_scale =
+        evidence_.more >= evidence_.less ? (heater_ | loss_ | air_) != 0 : (heater_ & 0x7f) != 0;
     const uint8_t found =
         static_cast<uint8_t>((heater_ != 0 ? 1 : 0) | (loss_ != 0 ? 2 : 0) | (Fan::fan_set() != 0 ? 4 : 0) |
                              (air_ != 0 ? 8 : 0) | (is_scale ? 16 : 0));
