@@ -79,7 +79,7 @@ void keep() {
 }
 
 // Everything that has come is taken at once: an answer is twice as long as the core's buffer. Whether the
-// board obeyed is in the next telemetry; a board that reports no power there is asked to confirm.
+// board obeyed is in the next telemetry; a board that reports no power there is asked for it.
 void receive() {
   while (Serial.available() > 0) {
     for (bool got = codec.receive(static_cast<uint8_t>(Serial.read()), micros()); got; got = codec.next()) {
@@ -88,8 +88,10 @@ void receive() {
         sbgc::hear_answer(codec.frame(), gimbal);
         continue;
       }
+      const bool is_power_reported = telemetry->motor_power(0) != 0;
       gimbal.step(*telemetry, seconds_since_step());
       send_command();
+      if (!is_power_reported) codec.send(sbgc::ask_power(), Serial);
       has_telemetry = true;
       poller.answered();
       keep();

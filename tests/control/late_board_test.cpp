@@ -234,6 +234,56 @@ TEMPLATE_TEST_CASE("a board that loses POWER and confirms what else it is told i
   CHECK(motor.now_C > 100.0);
 }
 
+TEMPLATE_TEST_CASE("a board that confirms POWER and does not obey is found by reading POWER back", "",
+                   FloatGimbal, FixedGimbal) {
+  // It reports no POWER, holds 250 after six seconds, and confirms every command.
+  for (const bool is_asked : {true, false}) {
+    TestType under_test;
+    Motor motor;
+    int power = 1;
+    long named = 0;
+    for (int cycle = 0; cycle < 10000; ++cycle) {
+      Telemetry telemetry;
+      telemetry.error = cycle < 200 ? 5.0 : 0.0;
+      under_test.gimbal.confirmed(confirm_of(tp::sbgc::command::set_adj_vars_val));
+      if (is_asked) {
+        // The board's answer to GET_ADJ_VARS_VAL, as it comes over the wire.
+        const std::uint8_t payload[] = {
+            1, tp::sbgc::variable::power_roll, static_cast<std::uint8_t>(power), 0, 0, 0};
+        const tp::sbgc::Frame answer = {tp::sbgc::command::set_adj_vars_val, sizeof payload, payload,
+                                        tp::sbgc::Version::v1};
+        REQUIRE(tp::sbgc::hear_answer(answer, under_test.gimbal));
+      }
+      const auto& command = under_test.step(telemetry);
+      if (cycle < 200) power = command.power[0];
+      motor.spend(power, 13.0);
+      named += cycle >= 200 && command.reason[0] == LimitReason::not_obeyed ? 1 : 0;
+      if (is_asked && cycle > 100) REQUIRE(under_test.motor_C() > motor.now_C - 0.5);
+    }
+    CAPTURE(is_asked);
+    CHECK(motor.now_C > 100.0);
+    CHECK((named > 9000) == is_asked);
+  }
+}
+
+TEST_CASE("once POWER was read back, CONFIRM no longer counts, and a board that obeys keeps its power") {
+  tp::PowerInForce<1> force;
+  const auto of_power = confirm_of(tp::sbgc::command::set_adj_vars_val);
+  for (int message = 0; message < 20; ++message) {
+    force.confirmed(of_power);
+    force.read_back(0, 200);
+    CHECK(force.heard(0, 0, 200) == 200);
+    REQUIRE(force.decided());
+  }
+  force.confirmed(of_power);
+  CHECK(force.heard(0, 0, 10) == 200);
+  CHECK_FALSE(force.decided());
+  force.read_back(0, 10);
+  force.heard(0, 0, 10);
+  CHECK(force.decided());
+  force.read_back(7, 10);  // an axis that there is not
+}
+
 TEST_CASE("an answer of the board reaches a gimbal by hear_answer") {
   struct Heard {
     int confirms = 0, errors = 0;

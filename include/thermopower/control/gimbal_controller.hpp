@@ -209,6 +209,8 @@ public:
         "thermopower: confirmed() needs the board's answer, with is_of_power(), such as sbgc::Confirm");
     force_.confirmed(confirm);
   }
+  /// The board was asked for its POWER and has answered: PowerInForce::read_back().
+  void read_back(uint8_t index, uint8_t power) noexcept { force_.read_back(index, power); }
   /// Your program has set a variable of the board by a command of its own: PowerInForce::other_sent().
   void other_sent() noexcept { force_.other_sent(); }
   /// The board has answered with an error: the power it was told may not be in force.

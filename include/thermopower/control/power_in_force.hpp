@@ -46,12 +46,14 @@ struct IsConfirm<Candidate, typename Exists<decltype(probe<const Candidate>().is
 /// | telemetry reports the POWER that was sent | that |
 /// | telemetry reports another, and a delay and a scale that were learned explain it | the largest that was sent within the delay, by the scale |
 /// | telemetry reports another, and nothing explains it | the largest of what was sent, what was before, and what is reported |
+/// | telemetry reports none (0), but the POWER was read back since the message before | as if it had been reported |
 /// | telemetry reports none (0), and the CONFIRM of the command came after it | what was sent |
 /// | the same, and CONFIRM did not come, or ERROR did | the largest of all that was sent since the last CONFIRM |
 /// | no telemetry for a while | the largest of what was sent and what was before |
 /// | no telemetry for longer than is tolerated | 255: the board may have restarted with anything |
 ///
-/// A board that neither reports nor ever confirms cannot be verified; what is sent to it is believed.
+/// A board that neither reports nor ever confirms cannot be verified; what is sent to it is believed. A CONFIRM says that the board
+/// took the command, not that it obeys. So once POWER was read back, CONFIRM no longer counts, and every message needs a POWER read back.
 ///
 /// **What is learned.** A board may show a command up to `longest_delay()` messages late. A report that moves within
 /// what was sent in that time teaches the delay; one that stands still while another POWER was sent is not obeyed. A
@@ -93,6 +95,8 @@ public:
   /// @param reported  POWER in force by the message, 0 when it does not say  @param sent  what was sent last
   /// @return the largest POWER that may have acted since the call before
   uint8_t heard(uint8_t axis, uint8_t reported, uint8_t sent) noexcept {
+    if (reported == 0) reported = read_[axis];
+    read_[axis] = 0;
     return axes_[axis].heard(reported, sent, axis == learning_, board_);
   }
 
@@ -122,7 +126,15 @@ public:
       --others_;
       return;
     }
-    board_.answers = board_.is_confirmed = true;
+    board_.answers = true;
+    board_.is_confirmed = !is_read_;
+  }
+  /// The board was asked for its POWER and has answered: `sbgc::hear_answer()` tells it. Of a board whose telemetry reports none.
+  /// @param power  its value, 0 .. 255
+  void read_back(uint8_t axis, uint8_t power) noexcept {
+    if (axis >= axis_count) return;
+    read_[axis] = power != 0 ? power : uint8_t(1);
+    board_.answers = is_read_ = true;
   }
   /// Your program has sent a command of the kind that sets POWER, for something else: its CONFIRM looks the same, so one
   /// the less is counted.
@@ -146,8 +158,10 @@ public:
 private:
   detail::AxisPower axes_[axis_count] = {};
   detail::BoardPower board_ = {};
-  uint8_t learning_ = 0;  // the axis that learns from the next message
-  uint8_t others_ = 0;    // CONFIRMs that may belong to other commands
+  uint8_t learning_ = 0;           // the axis that learns from the next message
+  uint8_t others_ = 0;             // CONFIRMs that may belong to other commands
+  uint8_t read_[axis_count] = {};  // POWER that was read back since the last message; 0: none
+  bool is_read_ = false;           // was ever
 };
 
 }  // namespace thermopower

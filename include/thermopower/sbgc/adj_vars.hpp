@@ -154,6 +154,13 @@ struct GetAdjVarsView {
   }
 };
 
+/// @brief Asks for POWER of roll, pitch and yaw: a CONFIRM says that the board took a command, and this that it has it. Send it after
+/// every command to a board whose telemetry reports no POWER; `hear_answer()` takes the answer.
+/// @ingroup sbgc
+inline GetAdjVars<3> ask_power() noexcept {
+  return GetAdjVars<3>{{variable::power_roll, variable::power_pitch, variable::power_yaw}};
+}
+
 /// @brief The message that carries a gimbal command to the board: POWER roll, pitch, yaw, then P roll, pitch,
 /// yaw.
 /// @param gimbal any object with `power[3]` and `p_gain[3]` of 0..255, roll, pitch, yaw, such as the command
