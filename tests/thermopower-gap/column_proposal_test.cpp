@@ -156,6 +156,11 @@ TEST_CASE("a heater's log in Marlin's letters; a T that falls is no time") {
   CHECK(proposals("time,T,@,A\n0,25,0,24\n1,40,127,24\n2,60,127,24\n3,55,0,24\n") ==
         "t_s=time; motor_C=T; power_param=@:127; ambient_C=A");
   CHECK(proposals("t,T\n0,25\n1,40\n2,30\n") == "t_s=t; motor_C=T");
+  // Of hot end and bed the one that is heated, the hot end where both are; targets are no time.
+  CHECK(proposals("T,T_target,B,B_target,@,B@\n24,0,25,60,0,127\n24,0,40,60,0,127\n24,0,60,60,0,40\n") ==
+        "motor_C=B; power_param=B@:127");
+  CHECK(proposals("T,T_target,B,B_target,@,B@\n25,0,25,60,127,127\n50,0,40,60,127,127\n60,0,60,60,9,40\n") ==
+        "motor_C=T; power_param=@:127");
 }
 
 TEST_CASE("dates, units below the header and pandas' index are read as they stand") {

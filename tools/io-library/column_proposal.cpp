@@ -123,6 +123,13 @@ public:
   void run() {
     marlin_ = std::any_of(list_.begin(), list_.end(),
                           [](const ListedColumn& one) { return one.header == "@" || one.header == "B@"; });
+    const auto is_heated = [&](std::initializer_list<const char*> powers) {
+      return std::any_of(list_.begin(), list_.end(), [&](const ListedColumn& one) {
+        return std::find(powers.begin(), powers.end(), one.header) != powers.end() && one.samples > 0 &&
+               one.greatest > 0.0;
+      });
+    };
+    only_bed_ = is_heated({"B@"}) && !is_heated({"@", "@0"});
     for (std::size_t i = 0; i < list_.size(); ++i) guesses_.push_back(guess(i));
     choose_joint();
     choose_drive();
@@ -241,13 +248,23 @@ private:
                     "count", "max", "min", "limit", "kp", "kd", "ki"}) &&
         !has(words, {"time"}) && unit.dimension != Dimension::time)
       return electronics && has(words, {"temp"}) ? nothing("temperature of the electronics") : Guess();
-    if (column.header == "@" || (marlin_ && column.header == "@0"))
-      return named("power_param", 5, "the heater's power as Marlin tells it");
-    if (marlin_ && (column.header == "T" || column.header == "T0"))
-      return named("motor_C", 5, "the hot end's temperature as Marlin tells it");
+    const bool hot_end_power = column.header == "@" || (marlin_ && column.header == "@0"),
+               hot_end = marlin_ && (column.header == "T" || column.header == "T0"),
+               bed = marlin_ && (column.header == "B" || column.header == "B@");
+    if (only_bed_ && (hot_end || hot_end_power))
+      return nothing("the hot end's, which is not heated in this log");
+    if (!only_bed_ && bed) return nothing("the bed's");
+    if (hot_end_power || column.header == "B@")
+      return named(
+          "power_param", 5,
+          hot_end_power ? "the heater's power as Marlin tells it" : "the bed's power as Marlin tells it");
+    if (hot_end || bed)
+      return named("motor_C", 5,
+                   hot_end ? "the hot end's temperature as Marlin tells it"
+                           : "the bed's temperature as Marlin tells it");
     if (marlin_ && column.header == "A")
       return named("ambient_C", 3, "the air's temperature as Marlin tells it");
-    if (marlin_ && (column.header == "B" || column.header == "B@")) return nothing("the bed's");
+    if (marlin_ && wanted) return nothing("a target temperature");
     // Temperatures whose letter is the clock's, too.
     if (has(words, {"tamb", "tair", "tenv", "troom"}) ||
         (air && has(words, {"t"}) && unit.dimension != Dimension::time))
@@ -398,7 +415,8 @@ private:
       const std::string unit = unit_of_time(column);
       if (unit != "s") tell(unit, "of " + readable(range(column)));
     } else if (guess.name == "power_param") {
-      const bool marlin = column.header == "@" || (column.whole && column.greatest == marlin_power);
+      const bool marlin =
+          column.header == "@" || column.header == "B@" || (column.whole && column.greatest == marlin_power);
       if (marlin && most <= marlin_power && !is_own_name) {
         tell("127", "up to 127, as Marlin counts");
       } else if (most > full_power) {
@@ -717,7 +735,7 @@ private:
   const CsvTable* table_;
   std::vector<Guess> guesses_;
   std::string chosen_;
-  bool has_joint_ = false, marlin_ = false;
+  bool has_joint_ = false, marlin_ = false, only_bed_ = false;
 };
 
 }  // namespace
