@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 //
-// Writes raw logs of six kinds, as machines write them, and the model that each is compared with. The machines are simulated here: a
-// printer's hotend behind a thermometer that comes late, a bed whose heater loses power as it warms, and a joint with dry
-// friction. Their models know nothing of that. The scripts beside this file go from a log to a report.
+// Writes raw logs of seven kinds, as machines write them, and the model that each is compared with. The machines are simulated here: a
+// printer's hotend behind a thermometer that comes late, one whose connector takes a part of its power, a bed whose heater loses
+// power as it warms, and a joint with dry friction. Their models know nothing of that. The scripts beside this file go from a log to a report.
 //
 //   raw_logs FOLDER
 
@@ -96,6 +96,22 @@ std::string klippy(const std::vector<HeaterRow>& rows) {
   return text;
 }
 
+/// The log up to where Klipper's check stops the printer: full power for a minute, and no two kelvins gained in 20 s.
+std::vector<HeaterRow> until_heating_failed(std::vector<HeaterRow> rows) {
+  constexpr std::size_t full_s = 60, gain_s = 20;
+  constexpr double gain_K = 2.0, missing_K = 5.0;
+  std::size_t at_full = 0;
+  for (std::size_t i = gain_s; i < rows.size(); ++i) {
+    at_full = rows[i].duty >= 1.0 ? at_full + 1 : 0;
+    const bool is_failed = at_full > full_s && rows[i].shown_C < rows[i].target_C - missing_K &&
+                           rows[i].shown_C - rows[i - gain_s].shown_C < gain_K;
+    if (!is_failed) continue;
+    rows.resize(i + 1);
+    break;
+  }
+  return rows;
+}
+
 std::string marlin(const std::vector<HeaterRow>& rows) {
   std::string text = "start\necho:Marlin 2.1.2\n";
   for (const HeaterRow& row : rows)
@@ -176,6 +192,13 @@ int main(int count, char** values) {
       "{\"format\": \"thermopower-model/1\", \"name\": \"hotend\", \"supply\": {\"nominal_V\": 24},\n"
       " \"current\": {\"law\": \"ohmic\", \"resistance_ohm\": 14.4, \"tempco_per_K\": 0},\n"
       " \"thermal\": {\"law\": \"lumped\", \"heat_capacity_J_per_K\": 12.2, \"conductance_W_per_K\": 0.118}}\n");
+  // 9 ohm in a connector beside the 14.4 of the cartridge: 15 W of 40 are left in it.
+  const std::vector<HeaterRow> failed = until_heating_failed(heated(
+      {40.0 * 14.4 * 14.4 / (23.4 * 23.4), 0.0, 12.0, 0.12, 0.0}, {120, 60, 100, 0, 130, 200}, true, 4));
+  write("failed.log", klippy(failed) +
+                          "Heater extruder not heating at expected rate\n"
+                          "See the 'verify_heater' section in docs/Config_Reference.md\n"
+                          "for the parameters that control this check.\n");
   write("serial.log", marlin(heated({200.0, 0.004, 90.0, 0.9, 0.0}, bed, false, 2)));
   write(
       "bed.json",
@@ -192,7 +215,7 @@ int main(int count, char** values) {
       "{\"format\": \"thermopower-model/1\", \"name\": \"joint\", \"axis\": {\"law\": \"rigid\", \"inertia_kgm2\": 0.0041,\n"
       " \"viscous_Nms_per_rad\": 0.02, \"torque_constant_Nm_per_A\": 0.5}}\n");
   std::printf(
-      "%s: klippy.log, serial.log, candump.log, robot.jsonl, moteus.csv, pandas.csv, and their models\n",
+      "%s: klippy.log, failed.log, serial.log, candump.log, robot.jsonl, moteus.csv, pandas.csv, and their models\n",
       folder.c_str());
   return 0;
 }
