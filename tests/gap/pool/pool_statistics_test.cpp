@@ -97,7 +97,7 @@ TEST_CASE("mean and spread of units come back, and the intervals hold what they 
                          ? 1.0 / (3.0 * fleets)
                          : 0.0;
       for (std::size_t i = 0; i < drawn.units.size(); ++i) {
-        const Shrunken one = shrink(fit, drawn.units[i]);
+        const Estimate one = shrink(fit, drawn.units[i]);
         shrunken += (one.at - drawn.truth[i]).squaredNorm();
         raw += (drawn.units[i].at - drawn.truth[i]).squaredNorm();
         for (Eigen::Index c = 0; c < k; ++c) {

@@ -2,9 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/pool/distributions.hpp>
-#include <thermopower/gap/pool/drift.hpp>
 #include <thermopower/gap/pool/mixed_effects.hpp>
+#include <thermopower/gap/pool/statistics.hpp>
 
 #include <Eigen/Core>
 
@@ -20,6 +19,9 @@ namespace thermopower::gap::pool {
 
 /// How probable each explanation is to one unit, by name. One that is not listed is next to impossible.
 using Probabilities = std::map<std::string, double>;
+
+/// No diagnosis is as sure as that an explanation is less probable.
+inline constexpr double impossible = 1e-6;
 
 /// How common an explanation is.
 struct Prevalence {
@@ -39,7 +41,6 @@ struct CommonCauses {
 /// likely gets likelier for units that cannot tell it from another one.
 /// @param units  probabilities with every explanation alike beforehand
 inline CommonCauses common_causes(const std::vector<Probabilities>& units) {
-  constexpr double impossible = 1e-6;  // no diagnosis is as sure as that
   constexpr int iterations = 300;
   CommonCauses result;
   std::map<std::string, Eigen::Index> column;
@@ -62,26 +63,17 @@ inline CommonCauses common_causes(const std::vector<Probabilities>& units) {
   }
   assert(!(std::abs(share.sum() - 1.0) > 1e-6));
   result.units.resize(units.size());
-  for (Eigen::Index i = 0; i < rows; ++i)
-    for (const auto& [name, place] : column) result.units[static_cast<std::size_t>(i)][name] = own(i, place);
+  const double count = static_cast<double>(units.size());
   for (const auto& [name, place] : column) {
-    Prevalence one;
-    one.explanation = name;
-    one.share = share[place];
-    one.units = one.share * static_cast<double>(units.size());
+    for (Eigen::Index i = 0; i < rows; ++i) result.units[static_cast<std::size_t>(i)][name] = own(i, place);
     // Jeffreys's interval of a share that was counted (Brown, Cai & DasGupta 2001).
-    const double a = one.units + 0.5, b = static_cast<double>(units.size()) - one.units + 0.5;
+    const double of_all = share[place] * count;
     const auto quantile = [&](double below) {
-      double low = 0.0, high = 1.0;
-      for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        (regularised_beta(a, b, middle) < below ? low : high) = middle;
-      }
-      return 0.5 * (low + high);
+      return end_of(0.0, 1.0, [&](double x) {
+        return regularised_beta(of_all + 0.5, count - of_all + 0.5, x) < below;
+      });
     };
-    one.share90 = {quantile(0.05), quantile(0.95)};
-    assert(one.share90.low <= one.share90.high);
-    result.common.push_back(one);
+    result.common.push_back({name, share[place], {quantile(0.05), quantile(0.95)}, of_all});
   }
   std::stable_sort(result.common.begin(), result.common.end(),
                    [](const Prevalence& a, const Prevalence& b) { return a.share > b.share; });
@@ -93,6 +85,9 @@ struct Gain {
   double train = 0.0;  ///< twice the log likelihood ratio of the training data, its parameters fitted there
   double held_out = 0.0;  ///< of held-out data, nothing fitted
   int parameters = 1;     ///< that were fitted in each log
+
+  /// Of all data, less twice the parameters fitted (Akaike).
+  double whole() const { return train + held_out - 2.0 * parameters; }
 };
 
 /// An effect that is too weak to be named in any log, and may be seen in all of them together.
@@ -106,37 +101,6 @@ struct WeakEffect {
   std::vector<std::string> not_told_from;  ///< others that the fleet cannot tell from it
 };
 
-namespace detail {
-
-/// Wilcoxon's signed-rank test, one-sided: probability that values around 0 would be as much above it. By ranks, as one
-/// log far off must not decide for a fleet; the normal approximation, which is good from six values on.
-inline double signed_rank_p(const std::vector<double>& values) {
-  constexpr std::size_t fewest = 6;
-  std::vector<double> sorted;
-  for (const double one : values)
-    if (one != 0.0) sorted.push_back(one);
-  if (sorted.size() < fewest) return 1.0;
-  std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  double sum = 0.0, square = 0.0;
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const double rank = static_cast<double>(i + 1);
-    sum += sorted[i] > 0.0 ? rank : -rank;
-    square += rank * rank;
-  }
-  const double z = (sum - 1.0) / std::sqrt(square);  // continuity
-  return z > 0.0 ? 0.5 * normal_tail(z) : 1.0 - 0.5 * normal_tail(z);
-}
-
-/// The middle of a sample; 0 where it is empty.
-inline double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace detail
-
 /// Looks for effects that help a little everywhere, among units whose own diagnosis names none.
 ///
 /// Named are explanations that help on held-out data over the units, at a family-wise error of `level` over all
@@ -147,46 +111,34 @@ inline double median_of(std::vector<double> values) {
 /// @return those that stand, the leading one first, then all others by p
 inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::string, Gain>>& units,
                                             double level = 0.01) {
-  std::map<std::string, std::vector<double>> held_out;
-  std::map<std::string, std::vector<double>> whole;
-  const auto all_data = [](const Gain& one) { return one.train + one.held_out - 2.0 * one.parameters; };
+  constexpr double doubt = 0.025;
+  std::map<std::string, std::vector<double>> held_out, whole;
   for (const auto& unit : units)
     for (const auto& [name, gain] : unit) {
       held_out[name].push_back(gain.held_out);
-      whole[name].push_back(all_data(gain));
+      whole[name].push_back(gain.whole());
     }
   std::vector<WeakEffect> list;
   std::vector<double> p;
   for (const auto& [name, values] : held_out) {
-    WeakEffect one;
-    one.explanation = name;
-    one.units = values.size();
-    one.gain = detail::median_of(whole[name]);
     // Looked at in fewer than half of the units, it is a choice of those that liked it.
-    one.held_out_median = detail::median_of(values);
-    if (2 * values.size() >= units.size()) one.p = detail::signed_rank_p(values);
-    p.push_back(one.p);
-    list.push_back(one);
+    p.push_back(2 * values.size() >= units.size() ? signed_rank_p(values) : 1.0);
+    list.push_back({name, values.size(), median(values), p.back(), false, median(whole[name]), {}});
   }
   const std::vector<bool> stands = holm(p, level);
-  assert(p.size() == list.size() && stands.size() == list.size());
   for (std::size_t i = 0; i < list.size(); ++i) list[i].stands = stands[i] && list[i].gain > 0.0;
   std::stable_sort(list.begin(), list.end(), [](const WeakEffect& a, const WeakEffect& b) {
     if (a.stands != b.stands) return a.stands;
     return a.stands ? a.gain > b.gain : a.p < b.p;
   });
-  if (list.empty() || !list.front().stands) return list;
-  for (std::size_t i = 1; i < list.size(); ++i) {
-    if (!list[i].stands) continue;
+  for (std::size_t i = 1; i < list.size() && list[i].stands; ++i) {
     std::vector<double> difference;
     for (const auto& unit : units) {
       const auto one = unit.find(list.front().explanation), other = unit.find(list[i].explanation);
       if (one != unit.end() && other != unit.end())
-        difference.push_back(all_data(one->second) - all_data(other->second));
+        difference.push_back(one->second.whole() - other->second.whole());
     }
-    constexpr double doubt = 0.025;
-    if (!(detail::signed_rank_p(difference) < doubt))
-      list.front().not_told_from.push_back(list[i].explanation);
+    if (!(signed_rank_p(difference) < doubt)) list.front().not_told_from.push_back(list[i].explanation);
   }
   return list;
 }

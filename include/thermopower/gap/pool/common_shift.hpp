@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,38 +32,28 @@ using CommonShift = std::map<std::string, Shift>;
 struct FittedBothWays {
   std::vector<const FittedExplanation*> without;  ///< of each log
   std::vector<const FittedExplanation*> with;     ///< of the same logs
-};
 
-namespace detail {
-
-/// Mean over a unit's logs of what the effect moves a coordinate by, and its variance.
-inline bool moved(const FittedBothWays& unit, const std::string& name, Estimate& result) {
-  const auto place = [&](const FittedExplanation& one) {
-    const auto found = std::find(one.names.begin(), one.names.end(), name);
-    return found == one.names.end() || one.fit.covariance.rows() != one.fit.at.size()
-               ? Eigen::Index{-1}
-               : static_cast<Eigen::Index>(found - one.names.begin());
-  };
-  // A restricted fit is the more precise one, and the two differ by the wider one's extra knowledge. So the variance of the
-  // difference is that of the variances (Hausman 1978). Both are estimates, so that it may come out as nothing; a twentieth
-  // of the wider fit's is the least that is believed.
-  constexpr double least = 0.05;
-  const double count = static_cast<double>(unit.with.size());
-  assert(unit.without.size() == unit.with.size());
-  double by = 0.0, variance = 0.0;
-  for (std::size_t i = 0; i < unit.with.size(); ++i) {
-    const FittedExplanation &one = *unit.without[i], &other = *unit.with[i];
-    const Eigen::Index from = place(one), to = place(other);
-    if (from < 0 || to < 0) return false;
-    const double wider = other.fit.covariance(to, to);
-    by += (other.fit.at[to] - one.fit.at[from]) / count;
-    variance += std::max(wider - one.fit.covariance(from, from), least * wider) / (count * count);
+  /// Mean over the logs of what the effect moves a coordinate by, and its variance; none where a fit lacks it.
+  std::optional<Estimate> moved(const std::string& name) const {
+    // A restricted fit is the more precise one, and the two differ by the wider one's extra knowledge. So the variance of the
+    // difference is that of the variances (Hausman 1978). Both are estimates, so that it may come out as nothing; a twentieth
+    // of the wider fit's is the least that is believed.
+    constexpr double least = 0.05;
+    const double count = static_cast<double>(with.size());
+    assert(without.size() == with.size());
+    double by = 0.0, variance = 0.0;
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      const std::optional<Estimate> one = without[i]->estimate_of({name}),
+                                    other = with[i]->estimate_of({name});
+      if (!one || !other) return std::nullopt;
+      const double wider = other->covariance(0, 0);
+      by += (other->at[0] - one->at[0]) / count;
+      variance += std::max(wider - one->covariance(0, 0), least * wider) / (count * count);
+    }
+    if (!std::isfinite(by) || !(variance > 0.0)) return std::nullopt;
+    return Estimate{Eigen::VectorXd::Constant(1, by), Eigen::MatrixXd::Constant(1, 1, variance)};
   }
-  result = {Eigen::VectorXd::Constant(1, by), Eigen::MatrixXd::Constant(1, 1, variance)};
-  return std::isfinite(by) && variance > 0.0;
-}
-
-}  // namespace detail
+};
 
 /// The shift of the units' constants by an effect that stands in the pool: mean and spread over the units. No single unit
 /// knows; what it gets from the others is the mean, and a wider error.
@@ -74,13 +65,12 @@ inline CommonShift common_shift(const std::vector<FittedBothWays>& units) {
   if (units.size() < fewest || units.front().without.empty()) return result;
   for (const std::string& name : units.front().without.front()->names) {
     if (!is_constant(name)) continue;
-    std::vector<Estimate> moved(units.size());
-    bool all = true;
-    for (std::size_t i = 0; i < units.size(); ++i) all = all && detail::moved(units[i], name, moved[i]);
-    if (!all) continue;
+    std::vector<Estimate> moved;
+    for (const FittedBothWays& unit : units)
+      if (const std::optional<Estimate> one = unit.moved(name)) moved.push_back(*one);
+    if (moved.size() < units.size()) continue;
     const MixedEffects fit = fit_mixed_effects(moved);
     const double error = fit.mean_covariance(0, 0);
-    assert(fit.size() == 1 && !(error < 0.0));
     result[name] = {fit.mean[0], error, error + fit.between(0, 0)};
   }
   return result;

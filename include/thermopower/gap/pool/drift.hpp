@@ -2,13 +2,14 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/pool/distributions.hpp>
+#include <thermopower/gap/pool/statistics.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 namespace thermopower::gap::pool {
@@ -51,36 +52,28 @@ struct LogScatter {
 /// The scatter between the logs of one unit, from all series of one coordinate. It uses differences of neighbouring logs,
 /// so that slow drifts hardly count, and their median, so that jumps of a few units do not.
 inline LogScatter log_scatter(const std::vector<TimeSeries>& fleet) {
+  // The median of chi^2. It is as precise as 0.37 times as many squares' mean, and neighbouring steps share a log.
+  constexpr double median_of_chi2 = 0.454936423, efficiency = 0.37 * 2.0 / 3.0;
   std::vector<double> squares, errors;
   for (const TimeSeries& one : fleet) {
     assert(one.variance.size() == one.at.size());
     for (std::size_t i = 1; i < one.at.size(); ++i) {
       const double step = one.at[i] - one.at[i - 1];
-      squares.push_back(step * step);
+      squares.push_back(step * step / median_of_chi2);
       errors.push_back(one.variance[i] + one.variance[i - 1]);
     }
   }
   LogScatter result;
   if (squares.empty()) return result;
-  // The variance at which half of the squared steps, each over its own variance, lie below the median of chi^2.
-  constexpr double median_of_chi2 = 0.454936423;
-  const auto share_below = [&](double variance) {
-    double below = 0.0;
-    for (std::size_t i = 0; i < squares.size(); ++i)
-      below += squares[i] < median_of_chi2 * (errors[i] + 2.0 * variance) ? 1.0 : 0.0;
-    return below / static_cast<double>(squares.size());
+  // The variance at which half of the squared steps, each over its own variance, lie below the median.
+  const auto is_too_small = [&](double variance) {
+    std::size_t below = 0;
+    for (std::size_t i = 0; i < squares.size(); ++i) below += squares[i] < errors[i] + 2.0 * variance;
+    return 2 * below < squares.size();
   };
-  double high = *std::max_element(squares.begin(), squares.end()) / median_of_chi2, low = 0.0;
-  if (share_below(0.0) < 0.5) {
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (share_below(middle) < 0.5 ? low : high) = middle;
-    }
-    result.variance = high;
-  }
-  // A median of squares is as precise as 0.37 times as many squares' mean; neighbouring steps share a log.
-  constexpr double efficiency = 0.37, shared = 2.0 / 3.0;
-  result.degrees = std::max(1.0, efficiency * shared * static_cast<double>(squares.size()));
+  if (is_too_small(0.0))
+    result.variance = end_of(0.0, *std::max_element(squares.begin(), squares.end()), is_too_small);
+  result.degrees = std::max(1.0, efficiency * static_cast<double>(squares.size()));
   return result;
 }
 
@@ -89,75 +82,53 @@ inline LogScatter log_scatter(const std::vector<TimeSeries>& fleet) {
 /// @param series   at least four logs, else there is none
 /// @param scatter  between the logs of one unit, from the fleet
 inline Drift find_drift(const TimeSeries& series, const LogScatter& scatter) {
+  constexpr Eigen::Index fewest = 4;
+  constexpr double within = 3.84;  // of chi^2, 95 %
   Drift result;
-  const std::size_t n = series.at.size();
-  assert(series.time.size() == n && series.variance.size() == n && !(scatter.variance < 0.0));
-  constexpr std::size_t fewest = 4;
+  const auto n = static_cast<Eigen::Index>(series.at.size());
+  assert(series.time.size() == series.at.size() && series.variance.size() == series.at.size());
   if (n < fewest) return result;
-  std::vector<double> weight(n);
-  double sum = 0.0, mean = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    weight[i] = 1.0 / std::max(series.variance[i] + scatter.variance, 1e-300);
-    sum += weight[i];
-    mean += weight[i] * series.at[i];
-  }
-  mean /= sum;
+  using Values = Eigen::Map<const Eigen::ArrayXd>;
+  const Values time(series.time.data(), n), at(series.at.data(), n), variance(series.variance.data(), n);
+  const Eigen::ArrayXd weight = (variance + scatter.variance).max(1e-300).inverse();
+  const auto centred = [&](const Eigen::ArrayXd& values) -> Eigen::ArrayXd {
+    return values - (weight * values).sum() / weight.sum();
+  };
+  const Eigen::ArrayXd away = centred(at);
   // By how much a regressor lowers the weighted squares, and its coefficient.
   struct Look {
     double gain = 0.0, coefficient = 0.0;
   };
-  const auto look = [&](const auto& regressor) {
-    double middle = 0.0, square = 0.0, product = 0.0;
-    for (std::size_t i = 0; i < n; ++i) middle += weight[i] * regressor(i) / sum;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double x = regressor(i) - middle;
-      square += weight[i] * x * x;
-      product += weight[i] * x * (series.at[i] - mean);
-    }
+  const auto look = [&](const Eigen::ArrayXd& regressor) {
+    const Eigen::ArrayXd x = centred(regressor);
+    const double square = (weight * x * x).sum(), product = (weight * x * away).sum();
     return square > 0.0 ? Look{product * product / square, product / square} : Look{};
   };
-  const Look slope = look([&](std::size_t i) { return series.time[i] - series.time.front(); });
-  std::vector<Look> changes(n);
-  std::size_t best = 1;
-  for (std::size_t at = 1; at < n; ++at) {
-    changes[at] = look([at](std::size_t i) { return i >= at ? 1.0 : 0.0; });
-    if (changes[at].gain > changes[best].gain) best = at;
+  std::vector<Look> changes;  // the first one from the second log on
+  for (Eigen::Index from = 1; from < n; ++from) {
+    Eigen::ArrayXd step = Eigen::ArrayXd::Ones(n);
+    step.head(from) = 0.0;
+    changes.push_back(look(step));
   }
-  const bool steady = slope.gain >= changes[best].gain;
-  const double gain = std::max(slope.gain, changes[best].gain);
-  result.p = std::min(1.0, static_cast<double>(n) * t_tail(std::sqrt(gain), scatter.degrees));
-  result.kind = steady ? DriftKind::slope : DriftKind::change;
-  if (steady) {
-    result.per_day = slope.coefficient;
-    result.size = slope.coefficient * (series.time.back() - series.time.front());
-    result.since = series.time.front();
-    result.until = series.time.back();
-    return result;
-  }
-  result.size = changes[best].coefficient;
-  // The moments within chi^2's 95 % of the best one; each lies between two logs.
-  constexpr double within = 3.84;
-  result.since = std::numeric_limits<double>::infinity();
-  result.until = -result.since;
-  for (std::size_t at = 1; at < n; ++at)
-    if (changes[at].gain > changes[best].gain - within) {
-      result.since = std::min(result.since, series.time[at - 1]);
-      result.until = std::max(result.until, series.time[at]);
-    }
+  const Look slope = look(time),
+             change = *std::max_element(changes.begin(), changes.end(),
+                                        [](const Look&a, const Look&b) { return a.gain < b.gain; });
+  const bool is_slope = slope.gain >= change.gain;
+  result.kind = is_slope ? DriftKind::slope : DriftKind::change;
+  result.p = std::min(
+      1.0, static_cast<double>(n) * t_tail(std::sqrt(std::max(slope.gain, change.gain)), scatter.degrees));
+  result.per_day = is_slope ? slope.coefficient : 0.0;
+  result.size = is_slope ? slope.coefficient * (time[n - 1] - time[0]) : change.coefficient;
+  result.since = time[0];
+  result.until = time[n - 1];
+  if (is_slope) return result;
+  // Each of the moments within reach of the best one lies between two logs.
+  const auto is_possible = [&](const Look& one) { return one.gain > change.gain - within; };
+  const auto first = std::find_if(changes.begin(), changes.end(), is_possible) - changes.begin(),
+             last = std::find_if(changes.rbegin(), changes.rend(), is_possible) - changes.rbegin();
+  result.since = time[first];
+  result.until = time[n - 1 - last];
   return result;
-}
-
-/// Holm's step-down: which of many tests stand at a family-wise error of `level`.
-inline std::vector<bool> holm(const std::vector<double>& p, double level) {
-  std::vector<std::size_t> order(p.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
-  std::vector<bool> stands(p.size(), false);
-  for (std::size_t place = 0; place < order.size(); ++place) {
-    if (!(p[order[place]] * static_cast<double>(p.size() - place) <= level)) break;
-    stands[order[place]] = true;
-  }
-  return stands;
 }
 
 }  // namespace thermopower::gap::pool

@@ -8,14 +8,13 @@
 #include <thermopower/gap/pool/log_result.hpp>
 #include <thermopower/gap/pool/odd_units.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -67,7 +66,7 @@ struct UnitVerdict {
   Standing standing;             ///< among the family, by its parameters
   double misfit = 1.0;           ///< RMSE with the family's cause over the family's usual one
   std::optional<Estimate> estimate;  ///< in the family's coordinates, of all its logs
-  std::optional<Shrunken> shrunken;  ///< the same drawn to the family
+  std::optional<Estimate> shrunken;  ///< the same drawn to the family
   std::vector<UnitDrift> drifts;     ///< those that stand
 };
 
@@ -136,81 +135,82 @@ private:
       }
       const std::string& name = log.unit.empty() ? log.log : log.unit;
       const auto [place, is_new] = known.emplace(name, result_.units.size());
-      if (is_new) {
-        result_.units.emplace_back();
-        result_.units.back().unit = name;
-      }
+      if (is_new) result_.units.emplace_back().unit = name;
       result_.units[place->second].logs.push_back(i);
     }
+    // A log that nobody dated comes last.
+    const auto moment = [&](std::size_t log) {
+      return std::isnan(logs_[log].time) ? std::numeric_limits<double>::infinity() : logs_[log].time;
+    };
     for (UnitVerdict& unit : result_.units)
       std::stable_sort(unit.logs.begin(), unit.logs.end(),
-                       [&](std::size_t a, std::size_t b) { return moment(logs_[a]) < moment(logs_[b]); });
+                       [&](std::size_t a, std::size_t b) { return moment(a) < moment(b); });
   }
 
-  /// When a log was recorded; one that nobody dated comes last.
-  static double moment(const LogResult& log) {
-    return std::isnan(log.time) ? std::numeric_limits<double>::infinity() : log.time;
+  static void normalise(Probabilities& all) {
+    double total = 0.0;
+    for (const auto& [name, probability] : all) total += probability;
+    for (auto& [name, probability] : all) probability /= total;
   }
 
   /// The likely explanations of one log.
   static Probabilities likely(const LogResult& log) {
     if (log.verdict == Verdict::no_gap) return {{"", 1.0}};
-    if (log.verdict == Verdict::unexplained) return {{outside, 1.0}};
     Probabilities result;
-    double total = 0.0;
     // An explanation with more effects than the named cause counts as doing no more than it.
     for (const FittedExplanation& one : log.ranking)
       if (one.effects <= log.chosen_effects && one.probability > 0.0)
-        total += one.probability, result[structure_of(one.name)] += one.probability;
-    for (auto& [name, probability] : result) probability /= total;
-    if (result.empty()) result[outside] = 1.0;
+        result[structure_of(one.name)] += one.probability;
+    if (log.verdict == Verdict::unexplained || result.empty()) return {{outside, 1.0}};
+    normalise(result);
     return result;
   }
 
+  /// The same of all logs of a unit together.
   Probabilities likely(const UnitVerdict& unit) const {
-    constexpr double impossible = 1e-6;
-    Probabilities sum;
     std::vector<Probabilities> each;
-    for (const std::size_t log : unit.logs) each.push_back(likely(logs_[log]));
-    for (const Probabilities& one : each)
-      for (const auto& [name, probability] : one) sum[name] = 0.0;
-    double largest = -1e300, total = 0.0;
-    for (auto& [name, value] : sum) {
+    Probabilities all;
+    for (const std::size_t log : unit.logs) {
+      each.push_back(likely(logs_[log]));
+      for (const auto& [name, probability] : each.back()) all[name] = 0.0;
+    }
+    double largest = -std::numeric_limits<double>::infinity();
+    for (auto& [name, value] : all) {
       for (const Probabilities& one : each) {
         const auto found = one.find(name);
-        value += std::log(std::max(found == one.end() ? 0.0 : found->second, impossible));
+        value += std::log(found == one.end() ? impossible : std::max(found->second, impossible));
       }
       largest = std::max(largest, value);
     }
-    for (auto& [name, value] : sum) total += value = std::exp(value - largest);
-    for (auto& [name, value] : sum) value /= total;
-    return sum;
+    for (auto& [name, value] : all) value = std::exp(value - largest);
+    normalise(all);
+    return all;
   }
 
   void find_families() {
     std::vector<Probabilities> units;
     for (const UnitVerdict& one : result_.units) units.push_back(likely(one));
     const CommonCauses found = common_causes(units);
-    assert(found.units.size() == result_.units.size());
-    const double count = static_cast<double>(units.size());
-    const double least = std::max(static_cast<double>(options_.family_units), options_.family_share * count);
+    const double least = std::max(static_cast<double>(options_.family_units),
+                                  options_.family_share * static_cast<double>(units.size()));
+    constexpr double half_a_unit = 0.5;
     for (const Prevalence& one : found.common) {
-      constexpr double mentioned = 0.5;  // units
-      if (one.units >= mentioned) result_.causes.push_back(one);
-      if (one.explanation == outside || !(one.units >= least - 0.5)) continue;
-      result_.families.emplace_back();
-      result_.families.back().cause = one.explanation;
-      result_.families.back().prevalence = one;
+      if (one.units >= half_a_unit) result_.causes.push_back(one);
+      if (one.explanation == outside || !(one.units >= least - half_a_unit)) continue;
+      Family& family = result_.families.emplace_back();
+      family.cause = one.explanation;
+      family.prevalence = one;
     }
     for (std::size_t i = 0; i < result_.units.size(); ++i) {
       UnitVerdict& unit = result_.units[i];
-      for (const auto& [name, probability] : found.units[i])
-        if (probability > unit.own_probability) unit.own_probability = probability, unit.own_cause = name;
-      double best = 0.0;
-      for (std::size_t f = 0; f < result_.families.size(); ++f) {
-        const double own = found.units[i].at(result_.families[f].cause);
-        if (own > best && own > 0.5) best = own, unit.family = static_cast<int>(f), unit.member = true;
-      }
+      const auto likeliest =
+          std::max_element(found.units[i].begin(), found.units[i].end(),
+                           [](const auto& one, const auto& other) { return one.second < other.second; });
+      unit.own_cause = likeliest->first;
+      unit.own_probability = likeliest->second;
+      for (std::size_t f = 0; f < result_.families.size(); ++f)
+        if (found.units[i].at(result_.families[f].cause) > 0.5) unit.family = static_cast<int>(f);
+      unit.member = unit.family >= 0;
       if (!unit.member) unit.family = nearest_family(unit);
     }
   }
@@ -221,20 +221,17 @@ private:
     double most = 0.0;
     for (std::size_t f = 0; f < result_.families.size(); ++f) {
       double gain = 0.0;
-      bool whole = true;
       for (const std::size_t log : unit.logs) {
         const FittedExplanation* one = logs_[log].likeliest(result_.families[f].cause);
-        whole = whole && one != nullptr && std::isfinite(one->held_out_gain);
-        if (whole) gain += one->train_gain + one->held_out_gain - 2.0 * one->own_parameters();
+        gain += one == nullptr ? std::nan("")
+                               : one->train_gain + one->held_out_gain - 2.0 * one->own_parameters();
       }
-      if (whole && (best < 0 || gain > most)) best = static_cast<int>(f), most = gain;
+      if (std::isfinite(gain) && (best < 0 || gain > most)) {
+        best = static_cast<int>(f);
+        most = gain;
+      }
     }
     return best;
-  }
-
-  static bool usable(const FittedExplanation* one) {
-    return one != nullptr && one->fit.covariance.rows() == one->fit.at.size() && one->fit.at.size() > 0 &&
-           one->fit.at.allFinite() && one->fit.covariance.allFinite();
   }
 
   std::vector<std::size_t> held_against(std::size_t family) const {
@@ -245,52 +242,39 @@ private:
   }
 
   /// Coordinates that are free in most members' fits. One on a bound, or fixed, tells nothing.
-  void choose_coordinates(Family& family, const std::vector<std::size_t>& units) {
-    std::map<std::string, std::pair<double, double>> seen;  // free, all
-    std::vector<std::string> order;
-    std::map<std::string, bool> logarithmic;
-    for (const std::size_t i : units) {
-      if (!result_.units[i].member) continue;
+  void choose_coordinates(Family& family, const std::vector<std::size_t>& units) const {
+    struct Seen {
+      std::string name;
+      bool is_logarithmic;
+      double free, all;
+    };
+    std::vector<Seen> seen;
+    for (const std::size_t i : units)
       for (const std::size_t log : result_.units[i].logs) {
         const FittedExplanation* one = logs_[log].likeliest(family.cause);
-        if (!usable(one)) continue;
+        if (!result_.units[i].member || one == nullptr || !one->is_usable()) continue;
         for (std::size_t c = 0; c < one->names.size(); ++c) {
-          if (seen.count(one->names[c]) == 0) order.push_back(one->names[c]);
+          auto place = std::find_if(seen.begin(), seen.end(),
+                                    [&](const Seen& each) { return each.name == one->names[c]; });
+          if (place == seen.end()) place = seen.insert(place, {one->names[c], one->logarithmic[c], 0.0, 0.0});
           const auto at = static_cast<Eigen::Index>(c);
-          auto& [free, all] = seen[one->names[c]];
-          free += !one->at_bound[c] && one->fit.covariance(at, at) > 0.0 ? 1.0 : 0.0;
-          all += 1.0;
-          logarithmic[one->names[c]] = one->logarithmic[c];
+          place->free += !one->at_bound[c] && one->fit.covariance(at, at) > 0.0 ? 1.0 : 0.0;
+          place->all += 1.0;
         }
       }
-    }
     constexpr double mostly = 0.8;
-    for (const std::string& name : order)
-      if (seen[name].first >= mostly * seen[name].second) {
-        family.coordinates.push_back(name);
-        family.logarithmic.push_back(logarithmic[name]);
+    for (const Seen& one : seen)
+      if (one.free >= mostly * one.all) {
+        family.coordinates.push_back(one.name);
+        family.logarithmic.push_back(one.is_logarithmic);
       }
   }
 
   /// A log's estimate in a family's coordinates; none where it lacks one.
   std::optional<Estimate> estimate_of(const Family& family, std::size_t log) const {
     const FittedExplanation* one = logs_[log].likeliest(family.cause);
-    if (!usable(one) || family.coordinates.empty()) return std::nullopt;
-    std::vector<Eigen::Index> places;
-    for (const std::string& name : family.coordinates) {
-      const auto found = std::find(one->names.begin(), one->names.end(), name);
-      if (found == one->names.end()) return std::nullopt;
-      places.push_back(found - one->names.begin());
-    }
-    const auto k = static_cast<Eigen::Index>(places.size());
-    Estimate result{Eigen::VectorXd(k), Eigen::MatrixXd(k, k)};
-    for (Eigen::Index a = 0; a < k; ++a) {
-      result.at[a] = one->fit.at[places[static_cast<std::size_t>(a)]];
-      for (Eigen::Index b = 0; b < k; ++b)
-        result.covariance(a, b) =
-            one->fit.covariance(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)]);
-    }
-    return result;
+    if (one == nullptr || family.coordinates.empty()) return std::nullopt;
+    return one->estimate_of(family.coordinates);
   }
 
   TimeSeries series_of(const UnitVerdict& unit, const Family& family, Eigen::Index coordinate) const {
@@ -308,14 +292,13 @@ private:
   /// differ by more than that, a coordinate's error is widened by as much (Birge's ratio).
   std::optional<Estimate> together(const UnitVerdict& unit, const Family& family) const {
     const auto k = static_cast<Eigen::Index>(family.coordinates.size());
-    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(k, k), sum = scatter;
-    assert(family.scatter.size() == family.coordinates.size());
-    for (Eigen::Index c = 0; c < k; ++c) scatter(c, c) = family.scatter[static_cast<std::size_t>(c)].variance;
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k);
     std::vector<Estimate> used;
     for (const std::size_t log : unit.logs)
       if (std::optional<Estimate> one = estimate_of(family, log)) {
-        one->covariance += scatter;
+        for (Eigen::Index c = 0; c < k; ++c)
+          one->covariance(c, c) += family.scatter[static_cast<std::size_t>(c)].variance;
         const Eigen::MatrixXd weight = inverse_of(one->covariance);
         if (!weight.allFinite()) continue;
         sum += weight;
@@ -327,16 +310,13 @@ private:
     result.covariance = inverse_of(sum);
     result.at = result.covariance * right;
     if (!result.at.allFinite() || !result.covariance.allFinite()) return std::nullopt;
-    if (used.size() < 2) return result;
-    Eigen::VectorXd widened = Eigen::VectorXd::Zero(k);
-    for (Eigen::Index c = 0; c < k; ++c) {
-      for (const Estimate& one : used) {
-        const double away = one.at[c] - result.at[c];
-        widened[c] += away * away / (one.covariance(c, c) * static_cast<double>(used.size() - 1));
-      }
-      widened[c] = std::sqrt(std::max(widened[c], 1.0));
+    Eigen::ArrayXd ratio = Eigen::ArrayXd::Zero(k);
+    for (const Estimate& one : used)
+      ratio += (one.at - result.at).array().square() / one.covariance.diagonal().array();
+    if (used.size() > 1) {
+      const Eigen::VectorXd widened = (ratio / static_cast<double>(used.size() - 1)).max(1.0).sqrt();
+      result.covariance = (widened.asDiagonal() * result.covariance * widened.asDiagonal()).eval();
     }
-    result.covariance = (widened.asDiagonal() * result.covariance * widened.asDiagonal()).eval();
     return result;
   }
 
@@ -354,42 +334,42 @@ private:
     const double level = 0.5 * options_.false_odd * static_cast<double>(units.size()) /
                          static_cast<double>(std::max<std::size_t>(result_.units.size(), 1));
     std::vector<Estimate> estimates, misfits;
-    std::vector<std::size_t> compared, fitted;
+    std::vector<UnitVerdict*> compared, fitted;
+    std::vector<double> usual;
     for (const std::size_t i : units) {
       UnitVerdict& unit = result_.units[i];
       unit.estimate = together(unit, family);
       if (unit.estimate) {
         estimates.push_back(*unit.estimate);
-        compared.push_back(i);
+        compared.push_back(&unit);
       }
       double sum = 0.0, count = 0.0;
       for (const std::size_t log : unit.logs)
         if (const FittedExplanation* one = logs_[log].likeliest(family.cause);
-            one != nullptr && one->misfit > 0.0)
-          sum += 0.5 * std::log(one->misfit), count += 1.0;
+            one != nullptr && one->misfit > 0.0) {
+          sum += 0.5 * std::log(one->misfit);
+          count += 1.0;
+        }
       if (count == 0.0) continue;
-      misfits.push_back({Eigen::VectorXd::Constant(1, sum / count), Eigen::MatrixXd::Zero(1, 1)});
-      fitted.push_back(i);
+      usual.push_back(sum / count);
+      misfits.push_back({Eigen::VectorXd::Constant(1, usual.back()), Eigen::MatrixXd::Zero(1, 1)});
+      fitted.push_back(&unit);
     }
-    assert(misfits.size() == fitted.size() && estimates.size() == compared.size());
     const OddUnits by_misfit = find_odd_units(misfits, level);
-    std::vector<double> usual;
-    for (const Estimate& one : misfits) usual.push_back(one.at[0]);
     const double middle = median(usual);
     family.usual_misfit = std::exp(2.0 * middle);
-    for (std::size_t place = 0; place < fitted.size(); ++place) {
-      UnitVerdict& unit = result_.units[fitted[place]];
-      unit.misfit = std::exp(misfits[place].at[0] - middle);
-      if (by_misfit.units[place].odd && unit.misfit > options_.misfit_matters) unit.oddity = Oddity::misfit;
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      fitted[i]->misfit = std::exp(usual[i] - middle);
+      if (by_misfit.units[i].odd && fitted[i]->misfit > options_.misfit_matters)
+        fitted[i]->oddity = Oddity::misfit;
     }
     if (k == 0) return;
     const OddUnits by_parameter = find_odd_units(estimates, level);
     family.spread = by_parameter.sound;
-    for (std::size_t place = 0; place < compared.size(); ++place) {
-      UnitVerdict& unit = result_.units[compared[place]];
-      unit.standing = by_parameter.units[place];
-      if (family.spread.size() > 0) unit.shrunken = shrink(family.spread, *unit.estimate);
-      if (unit.standing.odd) unit.oddity = Oddity::parameter;
+    for (std::size_t i = 0; i < compared.size(); ++i) {
+      compared[i]->standing = by_parameter.units[i];
+      if (family.spread.size() > 0) compared[i]->shrunken = shrink(family.spread, estimates[i]);
+      if (by_parameter.units[i].odd) compared[i]->oddity = Oddity::parameter;
     }
     for (Eigen::Index c = 0; c < k; ++c)
       family.differs.push_back(family.spread.size() > 0 &&
@@ -398,39 +378,41 @@ private:
 
   void judge_drifts() {
     std::vector<double> p;
-    std::vector<std::pair<std::size_t, UnitDrift>> found;
-    for (std::size_t i = 0; i < result_.units.size(); ++i) {
-      const UnitVerdict& unit = result_.units[i];
+    std::vector<std::pair<UnitVerdict*, UnitDrift>> found;
+    for (UnitVerdict& unit : result_.units) {
       if (unit.family < 0) continue;
       const Family& family = result_.families[static_cast<std::size_t>(unit.family)];
       for (std::size_t c = 0; c < family.coordinates.size(); ++c) {
         const TimeSeries series = series_of(unit, family, static_cast<Eigen::Index>(c));
-        bool dated = series.time.size() > 1;
-        for (const double time : series.time) dated = dated && std::isfinite(time);
-        if (!dated || !(series.time.back() > series.time.front())) continue;
-        found.push_back({i, {family.coordinates[c], find_drift(series, family.scatter[c]), series}});
+        // Undated logs come last.
+        if (series.time.empty() || !std::isfinite(series.time.back()) ||
+            !(series.time.back() > series.time.front()))
+          continue;
+        found.push_back({&unit, {family.coordinates[c], find_drift(series, family.scatter[c]), series}});
         p.push_back(found.back().second.drift.p);
       }
     }
     const std::vector<bool> stands = holm(p, options_.false_drift);
-    for (std::size_t place = 0; place < found.size(); ++place)
-      if (stands[place]) result_.units[found[place].first].drifts.push_back(found[place].second);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (stands[i]) found[i].first->drifts.push_back(found[i].second);
   }
 
   /// Whether weak effects may be looked for in a unit. A cause that the others lack is not a weak effect, and a fit with a
   /// wrong constant held fixed shows that constant.
   bool lacks_nothing(const UnitVerdict& unit) const {
-    assert(!unit.member || unit.family >= 0);
-    if (!unit.member || !result_.families[static_cast<std::size_t>(unit.family)].cause.empty()) return false;
-    if (unit.oddity != Oddity::none || !unit.drifts.empty()) return false;
-    return std::all_of(unit.logs.begin(), unit.logs.end(), [&](std::size_t log) {
-      const FittedExplanation* one = logs_[log].likeliest("");
-      return one != nullptr && one->name.empty();
-    });
+    return unit.member && result_.families[static_cast<std::size_t>(unit.family)].cause.empty() &&
+           unit.oddity == Oddity::none && unit.drifts.empty() &&
+           std::all_of(unit.logs.begin(), unit.logs.end(), [&](std::size_t log) {
+             const FittedExplanation* one = logs_[log].likeliest("");
+             return one != nullptr && one->name.empty();
+           });
   }
 
   /// The shift of the units' constants if all have an effect.
   CommonShift shift_of(const std::string& effect) const {
+    const auto fits = [](const FittedExplanation* one) {
+      return one != nullptr && one->is_usable() && !one->on_bounds;
+    };
     std::vector<FittedBothWays> units;
     for (const UnitVerdict& unit : result_.units) {
       if (!lacks_nothing(unit)) continue;
@@ -439,7 +421,6 @@ private:
         both.without.push_back(logs_[log].find(""));
         both.with.push_back(logs_[log].find(effect));
       }
-      const auto fits = [](const FittedExplanation* one) { return usable(one) && !one->on_bounds; };
       if (std::all_of(both.without.begin(), both.without.end(), fits) &&
           std::all_of(both.with.begin(), both.with.end(), fits))
         units.push_back(std::move(both));
@@ -460,17 +441,16 @@ private:
         const auto found = result_.weak_shift.find(family.coordinates[k]);
         if (found == result_.weak_shift.end()) continue;
         const auto c = static_cast<Eigen::Index>(k);
-        const auto move = [&, &shift = found->second](auto& unit) {
-          unit.at[c] += shift.by;
-          unit.covariance(c, c) += shift.variance;
-        };
-        for (const std::size_t i : held_against(f)) {
-          if (result_.units[i].estimate) move(*result_.units[i].estimate);
-          if (result_.units[i].shrunken) move(*result_.units[i].shrunken);
-        }
+        const Shift& shift = found->second;
+        for (const std::size_t i : held_against(f))
+          for (std::optional<Estimate>* one : {&result_.units[i].estimate, &result_.units[i].shrunken})
+            if (*one) {
+              (*one)->at[c] += shift.by;
+              (*one)->covariance(c, c) += shift.variance;
+            }
         if (family.spread.size() == 0) continue;
-        family.spread.mean[c] += found->second.by;
-        family.spread.mean_covariance(c, c) += found->second.error;
+        family.spread.mean[c] += shift.by;
+        family.spread.mean_covariance(c, c) += shift.error;
       }
     }
   }
@@ -485,8 +465,9 @@ private:
         for (const FittedExplanation& one : logs_[log].ranking) {
           // If a hidden start was fitted to the held-out data, their gain is not a test.
           if (one.effects != 1 || one.hidden_starts > 0 || !std::isfinite(one.held_out_gain)) continue;
-          Gain& gain = gains[one.name];
-          gain.parameters = (seen[one.name]++ == 0 ? 0 : gain.parameters) + one.own_parameters();
+          Gain& gain = gains.emplace(one.name, Gain{0.0, 0.0, 0}).first->second;
+          ++seen[one.name];
+          gain.parameters += one.own_parameters();
           gain.train += one.train_gain;
           gain.held_out += one.held_out_gain;
         }

@@ -62,6 +62,23 @@ struct FittedExplanation {
   std::vector<bool> at_bound;      ///< whether it ended on a bound
   Estimate fit;                    ///< its covariance is 0 by 0 where nobody looked at the curvature
 
+  /// Its estimate in some coordinates; none where it lacks one, or has no numbers.
+  std::optional<Estimate> estimate_of(const std::vector<std::string>& coordinates) const {
+    if (!is_usable()) return std::nullopt;
+    std::vector<Eigen::Index> places;
+    for (const std::string& one : coordinates) {
+      places.push_back(std::find(names.begin(), names.end(), one) - names.begin());
+      if (places.back() == fit.at.size()) return std::nullopt;
+    }
+    return Estimate{fit.at(places), fit.covariance(places, places)};
+  }
+
+  /// Whether somebody looked at the curvature of its fit, and all is finite.
+  bool is_usable() const {
+    return fit.covariance.rows() == fit.at.size() && fit.at.size() > 0 && fit.at.allFinite() &&
+           fit.covariance.allFinite();
+  }
+
   /// How many coordinates are its effects' own.
   int own_parameters() const {
     int count = 0;

@@ -2,11 +2,12 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/pool/distributions.hpp>
+#include <thermopower/gap/pool/statistics.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -40,20 +41,14 @@ struct MixedEffects {
   std::size_t units = 0;            ///< that it was made of
   Eigen::VectorXd
       heterogeneity_p;  ///< by coordinate: probability of such a spread were all units alike (Cochran's Q)
-  Eigen::VectorXd between_error;  ///< by coordinate: variance of the error of `between`'s diagonal
-  Eigen::VectorXd degrees;        ///< by coordinate: degrees of freedom of the mean's error (Satterthwaite)
+  Eigen::VectorXd information;  ///< by coordinate: 2 over the variance of the error of `between`'s diagonal
+  Eigen::VectorXd degrees;      ///< by coordinate: degrees of freedom of the mean's error (Satterthwaite)
   /// By coordinate: those that the spread itself is known to, in units of the most precise estimate's variance. With few
   /// or imprecise units there are few, and what rests on the spread says so by being wide.
   Eigen::VectorXd between_degrees;
 
   /// How many coordinates there are.
   Eigen::Index size() const { return mean.size(); }
-};
-
-/// A unit's own value after the fleet was looked at: the less precise it is, the more it is drawn to the mean.
-struct Shrunken {
-  Eigen::VectorXd at;          ///< the best prediction of the unit's own values
-  Eigen::MatrixXd covariance;  ///< of its error, that of the mean included
 };
 
 /// Fits the spread of units. Estimates must have one size and finite numbers.
@@ -63,20 +58,23 @@ inline MixedEffects fit_mixed_effects(const std::vector<Estimate>& units) {
   MixedEffects result;
   result.units = units.size();
   if (units.size() < 2) return result;
-  const Eigen::Index k = units.front().at.size();
-  const double count = static_cast<double>(units.size());
-  assert(std::all_of(units.begin(), units.end(), [k](const Estimate& one) { return one.at.size() == k; }));
-  // Begins at the spread of the estimates themselves.
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(k);
-  for (const Estimate& one : units) mean += one.at / count;
-  Eigen::MatrixXd between = Eigen::MatrixXd::Zero(k, k);
-  for (const Estimate& one : units) between += (one.at - mean) * (one.at - mean).transpose() / (count - 1.0);
-  // Where all are equal there is nothing to iterate on, and nothing to divide by.
-  for (Eigen::Index i = 0; i < k; ++i) between(i, i) += 1e-12 * (1.0 + mean[i] * mean[i]);
-  // Nor does a spread fall below what numbers of that size resolve.
-  const Eigen::VectorXd rounding = (1e-24 * (1.0 + mean.array().square())).matrix();
+  const Eigen::Index k = units.front().at.size(), n = static_cast<Eigen::Index>(units.size());
+  Eigen::MatrixXd at(k, n);
+  Eigen::ArrayXXd variance(k, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    at.col(i) = units[static_cast<std::size_t>(i)].at;
+    variance.col(i) = units[static_cast<std::size_t>(i)].covariance.diagonal();
+  }
+  // Begins at the spread of the estimates themselves. Where all are equal there is nothing to iterate on, and nothing to divide
+  // by; nor does a spread fall below what numbers of that size resolve.
+  Eigen::VectorXd& mean = result.mean = at.rowwise().mean();
+  Eigen::MatrixXd& between = result.between;
+  const Eigen::MatrixXd away = at.colwise() - mean;
+  const Eigen::ArrayXd squared_size = 1.0 + mean.array().square();
+  between = away * away.transpose() / static_cast<double>(n - 1);
+  between.diagonal().array() += 1e-12 * squared_size;
   std::vector<Eigen::MatrixXd> weights(units.size());
-  Eigen::MatrixXd error;
+  Eigen::MatrixXd& error = result.mean_covariance;
   const auto weigh = [&] {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k);
@@ -95,65 +93,48 @@ inline MixedEffects fit_mixed_effects(const std::vector<Estimate>& units) {
       const Eigen::VectorXd pull = weights[i] * (units[i].at - mean);
       push += pull * pull.transpose() - weights[i] + weights[i] * error * weights[i];
     }
-    const Eigen::MatrixXd step = between * push * between / count;
+    const Eigen::MatrixXd step = between * push * between / static_cast<double>(n);
     between += step;
     between = 0.5 * (between + between.transpose()).eval();
-    between.diagonal() = between.diagonal().cwiseMax(rounding).eval();
-    double change = 0.0;
-    for (Eigen::Index i = 0; i < k; ++i)
-      change = std::max(change, std::abs(step(i, i)) / std::max(between(i, i), 1e-300));
-    if (change < settled) break;
+    between.diagonal() = between.diagonal().cwiseMax((1e-24 * squared_size).matrix()).eval();
+    if ((step.diagonal().array().abs() < settled * between.diagonal().array()).all()) break;
   }
   weigh();
   assert(!(between.diagonal().array() < 0.0).any());
-  result.mean = mean;
-  result.mean_covariance = error;
-  result.between = between;
-  result.heterogeneity_p = result.between_error = result.degrees = result.between_degrees =
-      Eigen::VectorXd::Zero(k);
-  for (Eigen::Index i = 0; i < k; ++i) {
-    double weight = 0.0, weighted = 0.0, q = 0.0, squares = 0.0, sum = 0.0, largest = 0.0;
-    for (const Estimate& one : units) {
-      const double w = 1.0 / std::max(one.covariance(i, i), 1e-300);
-      weight += w;
-      weighted += w * one.at[i];
-      const double whole = 1.0 / (one.covariance(i, i) + between(i, i));
-      squares += whole * whole;
-      sum += whole;
-      largest = std::max(largest, whole);
-    }
-    for (const Estimate& one : units) {
-      const double away = one.at[i] - weighted / weight;
-      q += away * away / std::max(one.covariance(i, i), 1e-300);
-    }
-    result.heterogeneity_p[i] = chi2_tail(q, count - 1.0);
-    result.between_error[i] = 2.0 / squares;
-    result.degrees[i] = std::max(1.0, sum * sum / squares - 1.0);
-    result.between_degrees[i] = std::max(1.0, squares / (largest * largest) - 1.0);
-  }
+  const Eigen::ArrayXXd own = variance.max(1e-300).inverse(),
+                        whole = (variance.colwise() + between.diagonal().array()).inverse();
+  const Eigen::ArrayXd pooled = (own * at.array()).rowwise().sum() / own.rowwise().sum(),
+                       q = (own * (at.array().colwise() - pooled).square()).rowwise().sum(),
+                       squares = whole.square().rowwise().sum(), sum = whole.rowwise().sum(),
+                       largest = whole.rowwise().maxCoeff();
+  result.heterogeneity_p =
+      q.unaryExpr([&](double one) { return chi2_tail(one, static_cast<double>(n - 1)); });
+  result.information = squares;
+  result.degrees = (sum.square() / squares - 1.0).max(1.0);
+  result.between_degrees = (squares / largest.square() - 1.0).max(1.0);
   return result;
 }
 
-/// A unit's own values, given its estimate and the fleet it is one of. That the spread is an estimate, too, widens their
-/// errors (Morris 1983; here coordinate by coordinate).
-inline Shrunken shrink(const MixedEffects& fleet, const Estimate& unit) {
+/// A unit's own values, given its estimate and the fleet it is one of: the less precise it is, the more it is drawn to the mean. The
+/// covariance is that of the error, the mean's included. That the spread is an estimate, too, widens it (Morris 1983; here coordinate
+/// by coordinate).
+inline Estimate shrink(const MixedEffects& fleet, const Estimate& unit) {
   const Eigen::Index k = fleet.size();
   assert(unit.at.size() == k && unit.covariance.rows() == k && unit.covariance.cols() == k);
+  const Eigen::VectorXd away = unit.at - fleet.mean;
   const Eigen::MatrixXd gain = fleet.between * inverse_of(unit.covariance + fleet.between);
   const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(k, k) - gain;
-  Shrunken result;
-  result.at = fleet.mean + gain * (unit.at - fleet.mean);
-  result.covariance = fleet.between - gain * fleet.between + rest * fleet.mean_covariance * rest.transpose();
-  for (Eigen::Index i = 0; i < k; ++i) {
-    const double own = unit.covariance(i, i), whole = own + fleet.between(i, i);
-    const double by_spread = own / (whole * whole) * (unit.at[i] - fleet.mean[i]);
-    if (whole > 0.0) result.covariance(i, i) += by_spread * by_spread * fleet.between_error[i];
-  }
+  Estimate result{fleet.mean + gain * away,
+                  fleet.between - gain * fleet.between + rest * fleet.mean_covariance * rest.transpose()};
+  const Eigen::ArrayXd own = unit.covariance.diagonal(), whole = own + fleet.between.diagonal().array();
+  result.covariance.diagonal().array() +=
+      (whole > 0.0)
+          .select(2.0 * (own * away.array() / whole.square()).square() / fleet.information.array(), 0.0);
   return result;
 }
 
-/// Half the width of an interval that holds one coordinate of a unit with 95 % at least.
-inline double reach95(const MixedEffects& fleet, const Shrunken& unit, Eigen::Index coordinate) {
+/// Half the width of an interval that holds one coordinate of a unit with 95 % at least. @param unit  drawn to the fleet by shrink()
+inline double reach95(const MixedEffects& fleet, const Estimate& unit, Eigen::Index coordinate) {
   assert(coordinate >= 0 && coordinate < fleet.size());
   return t_quantile(0.05, fleet.between_degrees[coordinate]) *
          std::sqrt(std::max(unit.covariance(coordinate, coordinate), 0.0));

@@ -31,58 +31,37 @@ struct OddUnits {
 
 namespace detail {
 
-/// The middle of a sample, 0 of none.
-inline double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The units nearest to the coordinates' medians: a core that up to two fifths of odd units cannot pull away.
 inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
   assert(!units.empty());
-  const Eigen::Index k = units.front().at.size();
+  constexpr double normal = 1.4826;  // standard deviations in a median absolute deviation
+  constexpr double plain = 3.5;      // such deviations: nobody doubts these (Iglewicz & Hoaglin 1993)
   std::vector<double> far(units.size(), 0.0);
-  for (Eigen::Index c = 0; c < k; ++c) {
+  for (Eigen::Index c = 0; c < units.front().at.size(); ++c) {
     std::vector<double> values, errors;
     for (const Estimate& one : units) {
       values.push_back(one.at[c]);
       errors.push_back(one.covariance(c, c));
     }
-    const double middle = median(values), error = median(errors);
+    const double middle = median(values), smallest = 1e-24 * (1.0 + middle * middle);
     for (double& one : values) one = std::abs(one - middle);
-    constexpr double normal = 1.4826;  // standard deviations in a median absolute deviation
-    const double scale = std::max(normal * median(values), 1e-12 * (1.0 + std::abs(middle)));
-    const double between = std::max(scale * scale - error, 0.0);
+    const double scale = normal * median(values),
+                 between = std::max(scale * scale - median(errors), smallest);
     for (std::size_t i = 0; i < units.size(); ++i)
-      far[i] =
-          std::max(far[i], std::abs(units[i].at[c] - middle) / std::sqrt(between + units[i].covariance(c, c) +
-                                                                         1e-24 * (1.0 + middle * middle)));
+      far[i] = std::max(far[i], values[i] / std::sqrt(between + errors[i]));
   }
-  const std::size_t least =
-      std::max<std::size_t>((units.size() * 3) / 5, std::min<std::size_t>(units.size(), 4));
-  assert(least > 0 && least <= units.size());
+  const std::size_t least = std::max(units.size() * 3 / 5, std::min<std::size_t>(units.size(), 4));
   std::vector<double> sorted = far;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(least - 1), sorted.end());
-  constexpr double plain =
-      3.5;  // median absolute deviations' worth: nobody doubts these (Iglewicz & Hoaglin 1993)
+  std::sort(sorted.begin(), sorted.end());
   const double limit = std::max(sorted[least - 1], plain);
-  std::vector<bool> core(units.size());
-  for (std::size_t i = 0; i < units.size(); ++i) core[i] = far[i] <= limit;
+  std::vector<bool> core;
+  for (const double one : far) core.push_back(one <= limit);
   return core;
 }
 
-/// The reference of one unit: the others' mean, its error, their spread, and how well that is known.
-struct Others {
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd error, spread;
-  Eigen::VectorXd information;  ///< by coordinate, that the units have on the spread
-};
-
 /// A fleet without one of its units: its part of the mean, and of the last iteration of the spread, is taken out.
-inline Others without(const Estimate& one, const MixedEffects& fleet, const Eigen::VectorXd& information) {
-  assert(fleet.units > 1 && one.at.size() == fleet.size() && information.size() == fleet.size());
+inline MixedEffects without(const Estimate& one, const MixedEffects& fleet) {
+  assert(fleet.units > 1 && one.at.size() == fleet.size());
   const double count = static_cast<double>(fleet.units);
   const Eigen::MatrixXd& between = fleet.between;
   const Eigen::MatrixXd weight = inverse_of(one.covariance + between),
@@ -91,44 +70,32 @@ inline Others without(const Estimate& one, const MixedEffects& fleet, const Eige
   const Eigen::MatrixXd own = between -
                               between * (weight - weight * fleet.mean_covariance * weight) * between +
                               pull * pull.transpose();
-  Others others;
-  others.spread = (count * between - own) / (count - 1.0);
-  others.error = inverse_of(known - weight);
-  others.mean = others.error * (known * fleet.mean - weight * one.at);
-  others.information = information;
-  for (Eigen::Index c = 0; c < fleet.size(); ++c) {
-    const double whole = one.covariance(c, c) + between(c, c);
-    others.information[c] -= 1.0 / (whole * whole);
-  }
+  MixedEffects others;
+  others.between = (count * between - own) / (count - 1.0);
+  others.mean_covariance = inverse_of(known - weight);
+  others.mean = others.mean_covariance * (known * fleet.mean - weight * one.at);
+  others.information =
+      fleet.information.array() - (one.covariance + between).diagonal().array().square().inverse();
   return others;
 }
 
 /// Hotelling's T^2 of one unit, with Satterthwaite's degrees of freedom of the variance it is compared with.
 /// @param limit  probability below which it is odd
-inline Standing standing_of(const Estimate& one, const Others& others, double limit) {
-  const Eigen::Index k = one.at.size();
-  assert(k > 0 && others.mean.size() == k && others.information.size() == k);
+inline Standing standing_of(const Estimate& one, const MixedEffects& others, double limit) {
+  assert(one.at.size() > 0 && others.size() == one.at.size());
+  const double k = static_cast<double>(one.at.size());
   const Eigen::VectorXd away = one.at - others.mean;
-  const Eigen::MatrixXd whole = one.covariance + others.spread + others.error;
-  const double square = std::max(0.0, away.dot(inverse_of(whole) * away));
-  double degrees = -1.0;
-  for (Eigen::Index c = 0; c < k; ++c) {
-    const double own = one.covariance(c, c) + others.spread(c, c);
-    degrees += own * own * others.information[c] / static_cast<double>(k);
-  }
-  const double within = std::max(degrees - static_cast<double>(k) + 1.0, 0.5);
+  const Eigen::MatrixXd spread = one.covariance + others.between, whole = spread + others.mean_covariance;
+  const double square = std::max(0.0, away.dot(inverse_of(whole) * away)),
+               degrees = spread.diagonal().array().square().matrix().dot(others.information) / k - 1.0,
+               within = std::max(degrees - k + 1.0, 0.5);
+  const Eigen::VectorXd deviations = away.cwiseQuotient(whole.diagonal().cwiseSqrt());
   Standing standing;
   standing.distance = std::sqrt(square);
-  standing.p = f_tail(square * within / (static_cast<double>(k) * std::max(degrees, 1.0)),
-                      static_cast<double>(k), within);
+  standing.p = f_tail(square * within / (k * std::max(degrees, 1.0)), k, within);
   standing.odd = standing.p < limit;
-  for (Eigen::Index c = 0; c < k; ++c) {
-    const double own = away[c] / std::sqrt(whole(c, c));
-    if (std::abs(own) > std::abs(standing.standard_deviations)) {
-      standing.standard_deviations = own;
-      standing.coordinate = c;
-    }
-  }
+  deviations.cwiseAbs().maxCoeff(&standing.coordinate);
+  standing.standard_deviations = deviations[standing.coordinate];
   return standing;
 }
 
@@ -146,9 +113,8 @@ inline Standing standing_of(const Estimate& one, const Others& others, double li
 inline OddUnits find_odd_units(const std::vector<Estimate>& units, double false_odd = 0.01) {
   OddUnits result;
   result.units.resize(units.size());
-  if (units.empty()) return result;
-  const Eigen::Index k = units.front().at.size();
-  if (units.size() < static_cast<std::size_t>(k) + 4) {
+  const std::size_t fewest = units.empty() ? 1 : static_cast<std::size_t>(units.front().at.size()) + 4;
+  if (units.size() < fewest) {
     result.sound = fit_mixed_effects(units);
     return result;
   }
@@ -159,22 +125,15 @@ inline OddUnits find_odd_units(const std::vector<Estimate>& units, double false_
     std::vector<Estimate> others;
     for (std::size_t i = 0; i < units.size(); ++i)
       if (kept[i]) others.push_back(units[i]);
-    const MixedEffects& fleet = result.sound = fit_mixed_effects(others);
-    Eigen::VectorXd information = Eigen::VectorXd::Zero(k);
-    for (const Estimate& one : others)
-      for (Eigen::Index c = 0; c < k; ++c) {
-        const double whole = one.covariance(c, c) + fleet.between(c, c);
-        information[c] += 1.0 / (whole * whole);
-      }
-    const detail::Others all{fleet.mean, fleet.mean_covariance, fleet.between, information};
+    result.sound = fit_mixed_effects(others);
     std::vector<bool> next(units.size());
     for (std::size_t i = 0; i < units.size(); ++i) {
-      result.units[i] =
-          detail::standing_of(units[i], kept[i] ? detail::without(units[i], fleet, information) : all, limit);
+      result.units[i] = detail::standing_of(
+          units[i], kept[i] ? detail::without(units[i], result.sound) : result.sound, limit);
       next[i] = !result.units[i].odd;
     }
-    const auto sound = static_cast<std::size_t>(std::count(next.begin(), next.end(), true));
-    if (next == kept || sound < static_cast<std::size_t>(k) + 4) break;
+    if (next == kept || std::count(next.begin(), next.end(), true) < static_cast<std::ptrdiff_t>(fewest))
+      break;
     kept = std::move(next);
   }
   return result;
