@@ -85,10 +85,14 @@ struct Gain {
   double train = 0.0;  ///< twice the log likelihood ratio of the training data, its parameters fitted there
   double held_out = 0.0;  ///< of held-out data, nothing fitted
   int parameters = 1;     ///< that were fitted in each log
-
-  /// Of all data, less twice the parameters fitted (Akaike).
-  double whole() const { return train + held_out - 2.0 * parameters; }
 };
+
+namespace detail {
+
+/// The gain of all data, less twice the parameters fitted (Akaike).
+inline double whole(const Gain& gain) { return gain.train + gain.held_out - 2.0 * gain.parameters; }
+
+}  // namespace detail
 
 /// An effect that is too weak to be named in any log, and may be seen in all of them together.
 struct WeakEffect {
@@ -112,18 +116,18 @@ struct WeakEffect {
 inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::string, Gain>>& units,
                                             double level = 0.01) {
   constexpr double doubt = 0.025;
-  std::map<std::string, std::vector<double>> held_out, whole;
+  std::map<std::string, std::vector<double>> held_out, gains;
   for (const auto& unit : units)
     for (const auto& [name, gain] : unit) {
       held_out[name].push_back(gain.held_out);
-      whole[name].push_back(gain.whole());
+      gains[name].push_back(detail::whole(gain));
     }
   std::vector<WeakEffect> list;
   std::vector<double> p;
   for (const auto& [name, values] : held_out) {
     // Looked at in fewer than half of the units, it is a choice of those that liked it.
     p.push_back(2 * values.size() >= units.size() ? signed_rank_p(values) : 1.0);
-    list.push_back({name, values.size(), median(values), p.back(), false, median(whole[name]), {}});
+    list.push_back({name, values.size(), median(values), p.back(), false, median(gains[name]), {}});
   }
   const std::vector<bool> stands = holm(p, level);
   for (std::size_t i = 0; i < list.size(); ++i) list[i].stands = stands[i] && list[i].gain > 0.0;
@@ -136,7 +140,7 @@ inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::stri
     for (const auto& unit : units) {
       const auto one = unit.find(list.front().explanation), other = unit.find(list[i].explanation);
       if (one != unit.end() && other != unit.end())
-        difference.push_back(one->second.whole() - other->second.whole());
+        difference.push_back(detail::whole(one->second) - detail::whole(other->second));
     }
     if (!(signed_rank_p(difference) < doubt)) list.front().not_told_from.push_back(list[i].explanation);
   }

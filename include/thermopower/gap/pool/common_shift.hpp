@@ -32,28 +32,32 @@ using CommonShift = std::map<std::string, Shift>;
 struct FittedBothWays {
   std::vector<const FittedExplanation*> without;  ///< of each log
   std::vector<const FittedExplanation*> with;     ///< of the same logs
-
-  /// Mean over the logs of what the effect moves a coordinate by, and its variance; none where a fit lacks it.
-  std::optional<Estimate> moved(const std::string& name) const {
-    // A restricted fit is the more precise one, and the two differ by the wider one's extra knowledge. So the variance of the
-    // difference is that of the variances (Hausman 1978). Both are estimates, so that it may come out as nothing; a twentieth
-    // of the wider fit's is the least that is believed.
-    constexpr double least = 0.05;
-    const double count = static_cast<double>(with.size());
-    assert(without.size() == with.size());
-    double by = 0.0, variance = 0.0;
-    for (std::size_t i = 0; i < with.size(); ++i) {
-      const std::optional<Estimate> one = without[i]->estimate_of({name}),
-                                    other = with[i]->estimate_of({name});
-      if (!one || !other) return std::nullopt;
-      const double wider = other->covariance(0, 0);
-      by += (other->at[0] - one->at[0]) / count;
-      variance += std::max(wider - one->covariance(0, 0), least * wider) / (count * count);
-    }
-    if (!std::isfinite(by) || !(variance > 0.0)) return std::nullopt;
-    return Estimate{Eigen::VectorXd::Constant(1, by), Eigen::MatrixXd::Constant(1, 1, variance)};
-  }
 };
+
+namespace detail {
+
+/// Mean over the logs of what the effect moves a coordinate by, and its variance; none where a fit lacks it.
+inline std::optional<Estimate> moved(const FittedBothWays& unit, const std::string& name) {
+  // A restricted fit is the more precise one, and the two differ by the wider one's extra knowledge. So the variance of the
+  // difference is that of the variances (Hausman 1978). Both are estimates, so that it may come out as nothing; a twentieth
+  // of the wider fit's is the least that is believed.
+  constexpr double least = 0.05;
+  const double count = static_cast<double>(unit.with.size());
+  assert(unit.without.size() == unit.with.size());
+  double by = 0.0, variance = 0.0;
+  for (std::size_t i = 0; i < unit.with.size(); ++i) {
+    const std::optional<Estimate> one = unit.without[i]->estimate_of({name}),
+                                  other = unit.with[i]->estimate_of({name});
+    if (!one || !other) return std::nullopt;
+    const double wider = other->covariance(0, 0);
+    by += (other->at[0] - one->at[0]) / count;
+    variance += std::max(wider - one->covariance(0, 0), least * wider) / (count * count);
+  }
+  if (!std::isfinite(by) || !(variance > 0.0)) return std::nullopt;
+  return Estimate{Eigen::VectorXd::Constant(1, by), Eigen::MatrixXd::Constant(1, 1, variance)};
+}
+
+}  // namespace detail
 
 /// The shift of the units' constants by an effect that stands in the pool: mean and spread over the units. No single unit
 /// knows; what it gets from the others is the mean, and a wider error.
@@ -67,7 +71,7 @@ inline CommonShift common_shift(const std::vector<FittedBothWays>& units) {
     if (!is_constant(name)) continue;
     std::vector<Estimate> moved;
     for (const FittedBothWays& unit : units)
-      if (const std::optional<Estimate> one = unit.moved(name)) moved.push_back(*one);
+      if (const std::optional<Estimate> one = detail::moved(unit, name)) moved.push_back(*one);
     if (moved.size() < units.size()) continue;
     const MixedEffects fit = fit_mixed_effects(moved);
     const double error = fit.mean_covariance(0, 0);
