@@ -6,6 +6,7 @@
 #include "../../catch.hpp"
 
 #include <thermopower/gap/pool/causes.hpp>
+#include <thermopower/gap/pool/drift.hpp>
 #include <thermopower/gap/pool/odd_units.hpp>
 
 #include <Eigen/Cholesky>
