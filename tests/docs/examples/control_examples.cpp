@@ -41,7 +41,6 @@ struct Port {  // stands in for Serial
   }
 };
 
-//! [recorded run]
 struct Fan {  // its decisions, apart from its pins
   struct Told {
     uint16_t passed_ms, heat_counts;
@@ -64,6 +63,7 @@ struct Fan {  // its decisions, apart from its pins
   float warmth = 0.0f;
 };
 
+//! [recorded run]
 // On the board, behind recorder.begin(Fan::Told(), Fan::Answered()):
 void run(Fan& fan, tp::RunWriter<Port>& recorder, const Fan::Told& told) {
   recorder.step(told, fan.step(told));
