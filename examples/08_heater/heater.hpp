@@ -214,6 +214,7 @@ public:
   }
   bool is_started() const { return is_started_; }
   float second_C() const { return second_C_; }
+  float late_W() const { return late_W_; }
 
   /// @param heat_W  mean heat since the last step  @return degC, NaN before the start
   float step(float heat_W, float air_C, uint8_t fan, float dt_s) {
@@ -275,6 +276,73 @@ private:
   bool has_fallen_ = false;
 };
 
+/// Which of the suspects are the likeliest: by nominal constants, how much heat was missing until the alarm, and how much is while the
+/// heater cools. A weak heater lacks nothing without power. A larger or smaller loss, a fan and wrong air go on.
+template <class Plant>
+class Ranking {
+public:
+  /// @param late_W  heat as it arrives  @param is_begun  there is evidence  @param is_found  the monitor has alarmed
+  void step(float late_W, float measured_C, float air_C, uint8_t fan, float dt_s, bool is_begun,
+            bool is_found) {
+    constexpr tp::HeatBalanceConfig body = Plant::heat_balance();
+    constexpr float second_s = float(body.second_s), loss_W_per_K = float(body.loss_W_per_K),
+                    fan_W_per_K = float(body.fan_W_per_K / 255.0);
+    if (!(measured_C > -300.0f) || !(dt_s > 0.0f)) return;
+    if (!(second_C_ > -300.0f)) second_C_ = measured_C;
+    if (second_s > 0.0f) second_C_ += dt_s / (second_s + dt_s) * (measured_C - second_C_);
+    const float rise_K = measured_C - air_C;
+    const bool is_first = is_found && !has_alarmed_;
+    has_alarmed_ = is_found;
+    if (is_first) {
+      until_ = now_;
+      found_K_ = rise_K;
+    }
+    // Sums begin with the evidence, and anew with the alarm. Half cold, what is left says little.
+    if (is_first || !(now_.s > 0.0f) || (!is_begun && !is_found)) now_.start(measured_C, second_C_);
+    else if (is_found && rise_K < 0.5f * found_K_) return;
+    now_.s += dt_s;
+    now_.heat_J += dt_s * late_W;
+    now_.lost_J += dt_s * (loss_W_per_K + fan_W_per_K * fan) * rise_K;
+    now_.last_C = measured_C;
+    now_.last_second_C = second_C_;
+  }
+  /// @param suspects  a sum of `Suspect`  @return those of them that the cooling speaks for; all where it does not tell
+  uint8_t likeliest(uint8_t suspects) const {
+    const uint8_t of_heat = suspects & uint8_t(static_cast<uint8_t>(tp::Suspect::heater) |
+                                               static_cast<uint8_t>(tp::Suspect::thermometer)),
+                  of_loss = suspects & static_cast<uint8_t>(~of_heat);
+    if (!has_alarmed_ || !(until_.heat_J > 0.0f) || !(until_.lost_J > 0.0f) || of_heat == 0 || of_loss == 0)
+      return suspects;
+    const float lacked_W = until_.missing_J() / until_.s, lacks_W = now_.missing_J() / now_.s;
+    // What is left of the heat, and of what is lost.
+    const float heat = now_.heat_J / now_.s * until_.s / until_.heat_J,
+                lost = now_.lost_J / now_.s * until_.s / until_.lost_J;
+    if (!(lost - heat > 0.3f)) return suspects;
+    const float middle_W = 0.5f * lacked_W * (heat + lost);
+    return (lacked_W > 0.0f ? lacks_W < middle_W : lacks_W > middle_W) ? of_heat : of_loss;
+  }
+
+private:
+  /// Sums over a time.
+  struct Course {
+    float s = 0.0f, heat_J = 0.0f, lost_J = 0.0f, start_C = 0.0f, last_C = 0.0f, start_second_C = 0.0f,
+          last_second_C = 0.0f;
+    void start(float measured_C, float second_C) {
+      *this = Course();
+      start_C = measured_C;
+      start_second_C = second_C;
+    }
+    float missing_J() const {
+      constexpr tp::HeatBalanceConfig body = Plant::heat_balance();
+      return heat_J - lost_J - float(body.capacity_J_per_K) * (last_C - start_C) -
+             float(body.second_J_per_K) * (last_second_C - start_second_C);
+    }
+  };
+  Course now_, until_;
+  float second_C_ = tp::detail::not_a_number(), found_K_ = 0.0f;
+  bool has_alarmed_ = false;
+};
+
 /// The guard's bounds follow from the constants': a true reading is colder than expected by no more than heat and loss are off.
 template <class Plant>
 tp::SensorGuard::Config guard_of() {
@@ -318,6 +386,8 @@ public:
     reading_ = guard_.step({measured_C, expected_C}, dt_s);
     // The monitor judges good readings only: a bridged one is not measured.
     monitor_.step(tp::MonitorInputs::heater(heat_W, guard_.upper(0.0f), air_C, fan), dt_s);
+    ranking_.step(expected_.late_W(), guard_.upper(0.0f), air_C_, fan, passed_s,
+                  !monitor_.heat().evidence().is_none(), monitor_.disagreement() != tp::Disagreement::none);
     if (is_paused) fall_.restart();
     has_fallen_ = !fall_.step(guard_.upper(0.0f), expected_.second_C(), air_C_, passed_s);
     const tp::LimitReason found = monitor_.limit(255).reason;
@@ -342,12 +412,15 @@ public:
                                       static_cast<uint8_t>(tp::Suspect::loss) |
                                       static_cast<uint8_t>(tp::Suspect::fan));
   }
+  /// Those of the suspects that the cooling after a cut speaks for; after a quarter of a minute of a hotend, a minute of a bed.
+  uint8_t likeliest() const { return ranking_.likeliest(suspects()); }
   const tp::SensorGuard& guard() const { return guard_; }
   const tp::ModelMonitor<Plant>& monitor() const { return monitor_; }
 
 private:
   Expected<Plant> expected_;
   FallCheck<Plant> fall_;
+  Ranking<Plant> ranking_;
   tp::SensorGuard guard_ = tp::SensorGuard(guard_of<Plant>());
   tp::GuardedCelsius reading_;
   tp::ModelMonitor<Plant> monitor_;

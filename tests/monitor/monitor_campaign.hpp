@@ -44,6 +44,7 @@ struct Found {
   bool is_usual_early[3] = {false, false,
                             false};  ///< So did a usual check: what it says later counts for nothing.
   std::uint8_t suspects = 0;
+  std::uint8_t likeliest = 0;  ///< Of a heater that is cut: a minute after the alarm.
 };
 
 /// Notes the first alarm.
@@ -124,6 +125,7 @@ Found run_heater(const printer::Plant& nominal, const heater::Pid::Config& gains
     note(found.usual_s[0], found.is_usual_early[0], !runaway.step(goal_C, measured_C, step_s), after_s);
     note(found.usual_s[1], found.is_usual_early[1], !sum.step(goal_C, measured_C, step_s), after_s);
     note(found.usual_s[2], found.is_usual_early[2], !rate.step(goal_C, measured_C, step_s), after_s);
+    if (found.monitor_s >= 0.0 && after_s < found.monitor_s + 60.0) found.likeliest = watch.likeliest();
     const bool is_cut = is_cutting && found.monitor_s >= 0.0;
     duty = target_C > 0.0 && !is_cut ? pid.step(goal_C, measured_C, step_s) : 0.0f;
   }

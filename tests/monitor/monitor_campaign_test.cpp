@@ -33,6 +33,33 @@ TEST_CASE("what a heater can do wrong is found in most plants, with the cause am
   }
 }
 
+TEST_CASE("a minute of cooling tells a fault of the heat from one of the loss") {
+  using thermopower::Suspect;
+  const auto set = [](std::initializer_list<Suspect> all) {
+    std::uint8_t sum = 0;
+    for (const Suspect one : all) sum = static_cast<std::uint8_t>(sum | static_cast<std::uint8_t>(one));
+    return sum;
+  };
+  // A thermometer that reads a constant share looks like a weak heater for ever.
+  const std::uint8_t of_heat = set({Suspect::heater, Suspect::thermometer}),
+                     of_loss = set({Suspect::loss, Suspect::fan, Suspect::air});
+  for (const printer::Fault fault : {printer::Fault::heater_weak, printer::Fault::fan_lost}) {
+    int found = 0, right = 0;
+    for (std::uint32_t seed = 1; seed <= 12; ++seed)
+      for (const bool is_bed : {false, true}) {
+        const campaign::Found run = is_bed ? campaign::run_bed(seed, 3600.0, fault, 1200.0, true)
+                                           : campaign::run_hotend(seed, 3600.0, fault, 1200.0, true);
+        if (run.monitor_s < 0.0 || run.monitor_s > 2300.0) continue;
+        ++found;
+        const std::uint8_t other = fault == printer::Fault::heater_weak ? of_loss : of_heat;
+        right += (run.likeliest & campaign::truth(fault)) != 0 && (run.likeliest & other) == 0 ? 1 : 0;
+      }
+    INFO(printer::name(fault));
+    CHECK(found > 12);
+    CHECK(right >= found - 1);  // one in fifty is at an edge of its bounds that looks like the other
+  }
+}
+
 TEST_CASE("of two motors of which one fails, the winding's and the shaft's faults are told apart") {
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
