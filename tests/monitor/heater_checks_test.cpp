@@ -131,3 +131,22 @@ TEST_CASE("a heater whose supply, air or clock stays wrong is off, with a reason
     CHECK(hold.hottest_C < 215.0);
   }
 }
+
+TEST_CASE(
+    "a heater whose clock is wrong by two or by ten does not get hot, and says why; in a hold it stays at its target") {
+  for (const double scale : {0.1, 0.5, 2.0, 10.0}) {
+    CAPTURE(scale);
+    Hold heat_up;
+    bool is_named = false;
+    for (int second = 0; second < 600; ++second) {
+      heat_up.pass(1.0, 24.0f, 22.0f, static_cast<float>(0.1 * scale));
+      is_named = is_named || thermopower::is_fault(heat_up.firmware.reason());
+    }
+    CHECK(is_named);
+    CHECK(heat_up.hottest_C < 150.0);
+    Hold hold;
+    hold.pass(600.0);
+    hold.pass(600.0, 24.0f, 22.0f, static_cast<float>(0.1 * scale));
+    CHECK(hold.hottest_C < 215.0);
+  }
+}
