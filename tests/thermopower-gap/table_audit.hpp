@@ -114,9 +114,6 @@ private:
                                    chance = std::atof(m[2].str().c_str());
                       need(ratio >= chance && ratio <= 1.0, "a correlation that chance makes, too", evidence);
                     });
-      sentence.take(std::string("at periods above ") + number + " s", [&](const std::smatch& m) {
-        need(std::atof(m[1].str().c_str()) < w_.longest_run_s, "a period longer than any run", evidence);
-      });
       // What a freedom found by itself has no table.
       sentence.take("repeats [0-9]+ times a turn", [](const std::smatch&) {});
       sentence.take(std::string("behind a spring, ") + number + " Hz", [](const std::smatch&) {});

@@ -48,12 +48,6 @@ struct Location {
   std::optional<Regime> regime;          ///< where in which variable it is largest
   std::string evidence;                  ///< one sentence
   std::vector<Occurrence> only_in = {};  ///< the runs it shows in; empty: all of them, throughout
-  /// Whether the missing quantity follows no variable of a cause, and a course of its own predicts it: in time, or of a
-  /// torque over the angle.
-  bool has_own_course = false;
-  /// How much is missing, in multiples of what noise leaves. It is the mean square that constants within their slack do not
-  /// make up for, on stretches that they were not fitted to.
-  double times_noise = 0.0;
 };
 
 /// Whether a place takes anything of its signal's gap away, half a per cent or more. Of places that take nothing away by

@@ -39,7 +39,7 @@ struct AxisFreedomThresholds {
   double lowest_Hz = 1.5;        ///< of its frequency
   double highest_Hz = 40.0;      ///< of its frequency
   double of_sampling = 0.3;      ///< highest frequency, of the rows'
-  double next_frequency = 1.12;  ///< times the one before
+  double next_frequency = 1.08;  ///< times the one before
 };
 
 namespace detail {
@@ -181,7 +181,6 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
                      return held(scaled((*waves)(count), *drive_Nm));
                    }};
   periodic.scan = repeats_per_turn(*a);
-  periodic.penalty = 2;
   periodic.words_at = [](double count) { return repeating("a torque constant", count); };
   if (!periodic.scan.empty()) b.freedoms.push_back(std::move(periodic));
 }
@@ -209,7 +208,6 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
     Freedom periodic{Submodel::mechanical_load, "angle_deg", "",
                      [waves, sampled](double count) { return sampled((*waves)(count)); }};
     periodic.scan = repeats_per_turn(*a);
-    periodic.penalty = 2;
     periodic.words_at = [](double count) { return repeating("a torque", count); };
     if (!periodic.scan.empty()) b.freedoms.push_back(std::move(periodic));
   }
@@ -228,8 +226,6 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
        hertz <= std::min(limit.highest_Hz, limit.of_sampling / a->rows()->interval_s);
        hertz *= limit.next_frequency)
     spring.scan.push_back(hertz);
-  spring.refine = {0.93, 0.95, 0.97, 0.99, 1.01, 1.03, 1.05, 1.07};
-  spring.penalty = 2;
   spring.words_at = [](double hertz) {
     char words[80];
     std::snprintf(words, sizeof words, "an inertia behind a spring, %.1f Hz", hertz);
@@ -308,7 +304,6 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
                          std::function<std::vector<Direction>(double)> directions) {
       b.freedoms.push_back(
           {submodel, covariate.name, words + the_variable(covariate.name), std::move(directions)});
-      b.freedoms.back().penalty = 1;
     };
     add(Submodel::mechanical_drive, "a torque constant that changes with ", [drive_Nm, z](double) {
       return std::vector<Direction>{flow_held(*drive_Nm), flow_held(drive_Nm->cwiseProduct(*z))};
@@ -321,29 +316,6 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
       return std::vector<Direction>{flow_sampled(*z), flow_sampled(Eigen::VectorXd::Ones(z->size()))};
     });
     b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
-  }
-  const auto course = [&](Submodel submodel, const std::string& variable, const std::string& words,
-                          std::function<Eigen::MatrixXd()> columns) {
-    b.courses.push_back({submodel, variable, words, [columns](double) {
-                           return directions_of(columns(),
-                                                [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
-                         }});
-    // The action of a catalogue's causes is among the freedoms, and these did not do.
-    b.courses.back().is_nobodys = true;
-  };
-  const auto order = [n] { return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(n, 0.0, 1.0)); };
-  course(Submodel::mechanical_friction, "t_s", "a friction that changes in the course of time",
-         [a, direction, order] {
-           const Eigen::MatrixXd hats = even_hats(order(), 12);
-           return beside(scaled(hats, *direction), scaled(hats, a->rate));
-         });
-  course(Submodel::mechanical_load, "t_s", "a torque of its own course in time",
-         [order] { return even_hats(order(), 48); });
-  if (a->has_angle) {
-    course(Submodel::mechanical_friction, "angle_deg", "a friction that depends on the angle",
-           [a, direction] { return scaled(even_hats(a->angle, 24), *direction); });
-    course(Submodel::mechanical_load, "angle_deg", "a torque of its own course over the angle",
-           [a] { return even_hats(a->angle, 48); });
   }
   return b;
 }
@@ -385,7 +357,6 @@ inline Balance instrument_balance(const AxisAtRows& a) {
                      }};
   // A disc off its centre errs once a turn, an oval one twice, a magnet as often as it has pairs of poles.
   off_centre.scan = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};
-  off_centre.penalty = 2;
   off_centre.words_at = [](double count) {
     return count == 1.0 ? "an error of the angle that repeats every turn"
                         : detail::repeating("an error of the angle", count);

@@ -89,18 +89,13 @@ struct Freedom {
   std::function<std::vector<Direction>(double at)> directions;
   /// Bound of every coefficient from below: 0 for what acts one way only.
   double least = -std::numeric_limits<double>::infinity();
-  int penalty = 0;                  ///< directions that count besides: what a scan tried
-  std::vector<double> scan = {};    ///< values of which the best is taken; empty: `directions(0)` once
-  std::vector<double> refine = {};  ///< factors tried around the best of `scan`
+  std::vector<double> scan = {};  ///< values of which the best is taken; empty: `directions(0)` once
   std::function<std::string(double at)> words_at = nullptr;  ///< words for the scan's best; empty: `words`
   /// The instrument that may be at fault instead: it is, where other balances hold better without its reading,
   /// or with `correction` applied to it.
   std::optional<SubmodelName> or_instrument = {};
   std::optional<Correction> correction =
-      {};                          ///< see `or_instrument`; also of a fault of the instrument itself
-  std::string scatters_with = {};  ///< of a course without an order: its size goes with this variable
-  /// Of a course: that no cause has it, whatever it follows, so that one which leaves it stands in for another.
-  bool is_nobodys = false;
+      {};  ///< see `or_instrument`; also of a fault of the instrument itself
 };
 
 /// Something that may order a missing quantity.
@@ -161,10 +156,10 @@ struct Balance {
   Eigen::VectorXd flow_measured = {};  ///< the reading that the sampled flow is, NaN where missing; or empty
   Eigen::VectorXd noise_from = {};     ///< samples whose white noise `measured` carries; empty: itself
   double noise_gain = 1.0;             ///< multiplies the noise of `noise_from`
+  double noise = 0.0;  ///< standard deviation of the noise of `measured` where it is known; else 0
   std::vector<ConstantDirection> constants = {};  ///< what may be off within its slack
   std::vector<SignalName> reads = {};             ///< other signals whose readings make its flows
   std::vector<Freedom> freedoms = {};             ///< what may be otherwise
-  std::vector<Freedom> courses = {};              ///< of many directions, for what follows no variable
   std::vector<OrderingVariable> variables = {};   ///< what may order the missing quantity
   std::optional<RestatedQuantity> restated = {};  ///< for faults of the plant rather than of the instrument
   std::vector<int> half_widths = {};  ///< `weak`: of the test functions, in rows; narrow ones see fast faults

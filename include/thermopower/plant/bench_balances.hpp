@@ -260,14 +260,11 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
         });
       },
       0.0);
-  Freedom late{Submodel::sensing_temperature,
-               "dT_dt",
-               "",
+  Freedom late{Submodel::sensing_temperature, "dT_dt", "",
                [](double tau_s) {
                  return std::vector<Direction>{{{BalancePart::Kind::reading_late, {}, tau_s}}};
                },
-               0.0,
-               1};
+               0.0};
   for (int i = 0; i < 14; ++i)
     late.scan.push_back(k->shortest_s * std::pow(k->longest_s / k->shortest_s, i / 13.0));
   late.words_at = [](double tau_s) {
@@ -316,30 +313,6 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
     }
     b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
   }
-
-  // Both courses may lean on a loss that is constantly wrong: only what changes with time tells them apart.
-  const Eigen::Index knots =
-      std::max<Eigen::Index>(6, std::min<Eigen::Index>(60, std::min<Eigen::Index>(n, 8000) / 20));
-  const auto course = [k, watts, watts_by, knots](const Column& size) {
-    const Column order = [k]() -> Eigen::VectorXd {
-      return Eigen::VectorXd::LinSpaced(k->rise.size(), 0.0, 1.0);
-    };
-    std::vector<Direction> list = watts_by(even_knots(order(), static_cast<int>(knots)), order, size);
-    for (Direction& one : watts(columns_of({k->loss_per_K.cwiseProduct(k->rise), k->loss_per_K})))
-      list.push_back(std::move(one));
-    return list;
-  };
-  const std::string nothing = "nothing recorded orders it; a course of its own in time";
-  b.courses.push_back({Submodel::thermal_heating, "", nothing,
-                       [k, course](double) { return course([k] { return k->loss_per_K; }); }});
-  b.courses.push_back({Submodel::thermal_loss, "", nothing, [k, course](double) {
-                         return course(
-                             [k]() -> Eigen::VectorXd { return k->loss_per_K.cwiseProduct(k->rise); });
-                       }});
-  b.courses.back().scatters_with = "rise_K";
-  b.courses.push_back({Submodel::thermal_storage, "motor_C",
-                       "a heat capacity with a peak at some temperature",
-                       [contents](double) { return contents(24); }});
   return b;
 }
 

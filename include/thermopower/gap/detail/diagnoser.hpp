@@ -13,7 +13,6 @@
 #include <thermopower/gap/fit/curve_ranges.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/gap/localise/occurrence.hpp>
-#include <thermopower/gap/localise/own_plant.hpp>
 #include <thermopower/gap/options.hpp>
 #include <thermopower/gap/report/held_out_predictions.hpp>
 #include <thermopower/gap/report/last_fit.hpp>
@@ -47,9 +46,7 @@ public:
     stage("data gate");
     if (!enough_data(result_, model_, train_inputs_, held_out_inputs_, options_.horizon_s))
       return std::move(result_);
-    Localisation found;
-    if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
-    else found = localise(model_, train_recordings_, {}, catalogue_);
+    Localisation found = localise(model_, train_recordings_, {}, catalogue_);
     if (!model_.own) add_occurrences(model_, train_recordings_, held_out_recordings_, {}, catalogue_, found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
@@ -439,10 +436,7 @@ private:
       for (SimulatedSignal& signal :
            simulate(result_.augmented, one, {SimulationMode::free_running, options_.horizon_s}, catalogue_))
         one.set(to_string(signal.signal), std::move(signal.values));
-    if (!model_.own) return draw_effect(model_, std::move(simulated), catalogue_, result_.missing_quantities);
-    std::vector<Inputs> inputs;
-    for (const Recording& one : simulated) inputs.push_back(prepare(model_, one));
-    draw_own_effect(model_, catalogue_, inputs, result_.missing_quantities);
+    draw_effect(model_, std::move(simulated), catalogue_, result_.missing_quantities);
   }
 
   void stage(const char* name) {

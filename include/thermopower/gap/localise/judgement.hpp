@@ -5,10 +5,10 @@
 #include <thermopower/gap/localise/projection.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,138 +17,117 @@
 
 namespace thermopower::gap::engine {
 
+/// A freedom that predicts what is missing in a balance.
+struct ChosenFreedom {
+  plant::Freedom freedom;    ///< without its directions: they hold the rows, and a recording may be long
+  std::string words;         ///< its name, with the value that a scan found
+  double worth = 0.0;        ///< share of the excess on unseen stretches that it explains, 0..1
+  double coefficient = 0.0;  ///< its first
+};
+
 /// One balance, judged.
 class Judgement {
 public:
   /// @param slack  how far the balance's constants may be off, as a fraction
   Judgement(const plant::Balance& balance, double slack, const LocalisationThresholds& limit)
-      : balance_(names_of(balance)), limit_(limit) {
+      : signal_(balance.signal), instrument_(balance.instrument), limit_(limit) {
     const std::unique_ptr<Projection> projection = projection_of(balance, limit_);
+    if (projection->rows() < limit_.least_rows) return;
     floor_ = projection->floor();
-    if (projection->residual().size() < limit_.least_rows) return;
-    Problem problem = problem_of(balance, *projection, slack);
+    const Problem problem = problem_of(balance, *projection, slack);
     std::vector<Block> blocks;
     for (const plant::Freedom& freedom : balance.freedoms)
       blocks.push_back(block_of(freedom, *projection, problem));
     const BlockFitter fitter(problem, blocks);
-    choice_ = choose_blocks(fitter, floor_, limit_);
-    for (const Block& block : blocks) at_.push_back(block.at);
-    weigh(fitter);
+    none_ = fitter.fit({});
+    best_ = choice(fitter);
     Eigen::Index from = problem.nuisance.cols() + problem.free.cols();
-    for (const std::size_t i : choice_.best.blocks) {
-      coefficient_.push_back(choice_.best.coefficients[from]);
+    for (const std::size_t i : best_.blocks) {
+      plant::Freedom freedom = balance.freedoms[i];
+      freedom.directions = nullptr;
+      std::string words = freedom.words_at ? freedom.words_at(blocks[i].at) : freedom.words;
+      chosen_.push_back({std::move(freedom), std::move(words), 0.0, best_.coefficients[from]});
       from += blocks[i].columns.cols();
     }
-    if (asks_for_course()) look_for_course(balance, *projection, problem);
+    weigh(fitter);
   }
 
-  /// The balance's names and words, without its rows: a recording may be long, and who needs them makes them again.
-  const plant::Balance& balance() const { return *balance_; }
+  /// The signal that the balance's residual shows in.
+  const plant::SignalName& signal() const { return signal_; }
+  /// The instrument that shows it.
+  const plant::SubmodelName& instrument() const { return instrument_; }
   /// Whether the constants within their slack leave more than noise allows.
   bool gap() const {
-    return choice_.none.seen_total > limit_.gap_seen * floor_ && before() > limit_.gap_unseen;
+    return none_.seen > limit_.gap_seen * floor_ && none_.unseen > limit_.gap_unseen * floor_;
   }
-  /// Indices of the freedoms chosen; the one that explains more first.
-  const std::vector<std::size_t>& chosen() const { return choice_.best.blocks; }
-  /// The k-th of them.
-  const plant::Freedom& freedom(std::size_t k) const {
-    assert(k < chosen().size() && chosen()[k] < balance_->freedoms.size());
-    return balance_->freedoms[chosen()[k]];
-  }
-  /// Share of the excess that the k-th explains, 0..1.
-  double worth(std::size_t k) const {
-    assert(k < worth_.size());
-    return worth_[k];
-  }
-  /// Its first coefficient.
-  double coefficient(std::size_t k) const { return coefficient_[k]; }
-  /// Its name.
-  std::string words(std::size_t k) const {
-    const plant::Freedom& one = freedom(k);
-    return one.words_at ? one.words_at(at_[chosen()[k]]) : one.words;
-  }
-  /// Share of the excess on unseen stretches that all of them explain, 0..1.
-  double explained() const {
-    return std::min(1.0, (choice_.none.unseen_total - choice_.best.unseen_total) / excess_);
-  }
+  /// At most two; the one that explains more alone first.
+  const std::vector<ChosenFreedom>& chosen() const { return chosen_; }
+  /// Whether there is a gap of which they explain more than a share.
+  bool is_explained_beyond(double share) const { return gap() && !chosen_.empty() && explained() > share; }
+  /// Share of the excess on unseen stretches that all of them explain, at most 1.
+  double explained() const { return std::min(1.0, (none_.unseen - best_.unseen) / excess()); }
   /// The rest of the constants alone on unseen stretches, in floors.
-  double before() const { return choice_.none.unseen_total / floor_; }
+  double before() const { return none_.unseen / floor_; }
   /// The rest of the chosen freedoms there, in floors.
-  double left() const { return choice_.best.unseen_total / floor_; }
-  /// Whom a course of its own accuses that no freedom of few directions describes; nullptr: none is better.
-  const plant::Freedom* course() const { return course_; }
-  /// Share of what the constants leave that it explains, 0..1.
-  double course_share() const { return course_share_; }
+  double left() const { return best_.unseen / floor_; }
   /// The cost of this account of the balance among its alternatives.
   double cost() const {
-    return choice_.best.unseen_total * (1.0 + limit_.per_block * static_cast<double>(chosen().size()));
+    return best_.unseen * (1.0 + limit_.per_block * static_cast<double>(best_.blocks.size()));
   }
 
 private:
-  static std::shared_ptr<const plant::Balance> names_of(const plant::Balance& balance) {
-    auto names = std::make_shared<plant::Balance>();
-    names->quantity = balance.quantity;
-    names->unit = balance.unit;
-    names->signal = balance.signal;
-    names->instrument = balance.instrument;
-    names->otherwise = balance.otherwise;
-    names->given = balance.given;
-    names->form = balance.form;
-    names->reads = balance.reads;
-    names->freedoms = balance.freedoms;
-    names->courses = balance.courses;
-    for (auto* list : {&names->freedoms, &names->courses})
-      for (plant::Freedom& one : *list) one.directions = nullptr;
-    return names;
+  double excess() const { return std::max(none_.unseen - floor_, std::numeric_limits<double>::min()); }
+
+  /// Of all single blocks and all pairs, the fewest directions that leave no clearly more on unseen stretches than the best.
+  BlockFit choice(const BlockFitter& fitter) const {
+    // Stretches that bind a constant make the prediction of the unseen worse than what was seen: either may say that
+    // nothing is missing.
+    if (none_.seen <= limit_.nothing_seen * floor_ && none_.unseen <= limit_.nothing_unseen * floor_)
+      return none_;
+    const auto best_of = [](const std::vector<BlockFit>& fits) {
+      return *std::min_element(fits.begin(), fits.end(),
+                               [](const BlockFit& a, const BlockFit& b) { return a.unseen < b.unseen; });
+    };
+    const auto simplest_of = [&](const std::vector<BlockFit>& fits) {
+      BlockFit pick = best_of(fits);
+      const double enough = (1.0 + limit_.as_good) * pick.unseen + limit_.as_good_floor * floor_;
+      for (const BlockFit& one : fits)
+        if (one.directions < pick.directions && one.unseen <= enough) pick = one;
+      return pick;
+    };
+    std::vector<BlockFit> singles, pairs;
+    for (std::size_t i = 0; i < fitter.size(); ++i) singles.push_back(fitter.fit({i}));
+    if (singles.empty()) return none_;
+    const BlockFit single = simplest_of(singles);
+    const double left = best_of(singles).unseen;
+    if (single.unseen > limit_.no_help * none_.unseen) return none_;
+    if (left <= limit_.needs_a_second * floor_) return single;
+    for (std::size_t i = 0; i < fitter.size(); ++i)
+      for (std::size_t k = i + 1; k < fitter.size(); ++k)
+        pairs.push_back(singles[k].unseen < singles[i].unseen ? fitter.fit({k, i}) : fitter.fit({i, k}));
+    // A second block must matter: next to the first, and next to all there was to explain.
+    if (pairs.empty() ||
+        left - best_of(pairs).unseen <
+            std::max(limit_.second_gain * left, limit_.second_share * (none_.unseen - floor_)))
+      return single;
+    return simplest_of(pairs);
   }
 
   void weigh(const BlockFitter& fitter) {
-    excess_ = std::max(choice_.none.unseen_total - floor_, std::numeric_limits<double>::min());
-    const std::vector<std::size_t>& blocks = choice_.best.blocks;
-    const double all = std::max(0.0, choice_.none.unseen_total - choice_.best.unseen_total);
     double sum = 0.0;
-    for (const std::size_t i : blocks) {
-      worth_.push_back(blocks.size() == 1
-                           ? all
-                           : std::max(0.0, fitter.fit({blocks[i == blocks[0] ? 1 : 0]}).unseen_total -
-                                               choice_.best.unseen_total));
-      sum += worth_.back();
+    for (std::size_t k = 0; k < chosen_.size(); ++k) {
+      const double without = chosen_.size() == 1 ? none_.unseen : fitter.fit({best_.blocks[1 - k]}).unseen;
+      sum += chosen_[k].worth = std::max(0.0, without - best_.unseen);
     }
-    for (double& one : worth_) one *= sum > 0.0 ? std::min(1.0, all / excess_) / sum : 0.0;
+    for (ChosenFreedom& one : chosen_) one.worth *= sum > 0.0 ? std::max(0.0, explained()) / sum : 0.0;
   }
 
-  bool asks_for_course() const {
-    if (balance_->courses.empty() || !gap()) return false;
-    const bool weak = balance_->form == plant::BalanceForm::weak;
-    return left() > (weak ? limit_.weak_course : limit_.filtered_course) &&
-           (weak || explained() < limit_.filtered_explained) &&
-           choice_.best.seen_total > limit_.course_of_seen * choice_.none.seen_total;
-  }
-
-  void look_for_course(const plant::Balance& balance, const Projection& projection, const Problem& problem) {
-    const double rows = static_cast<double>(problem.y.size()),
-                 price = balance_->form == plant::BalanceForm::weak ? limit_.weak_per_direction
-                                                                    : limit_.filtered_per_direction;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < balance.courses.size(); ++i) {
-      const Eigen::MatrixXd columns = projection.columns(balance.courses[i].directions(0.0));
-      const double free_rows = std::max(1.0, rows - price * static_cast<double>(columns.cols()));
-      const double left = sum_of_squares_left(problem, columns) * rows * rows / (free_rows * free_rows);
-      if (!(left < least)) continue;
-      least = left;
-      course_ = &balance_->courses[i];
-    }
-    if (!(least < limit_.course_better * std::min(choice_.best.seen_total, choice_.none.seen_total)))
-      course_ = nullptr;
-    course_share_ = std::clamp(1.0 - least / choice_.none.seen_total, 0.0, 1.0);
-  }
-
-  std::shared_ptr<const plant::Balance> balance_;  // shared: copies keep what points into it
+  plant::SignalName signal_;
+  plant::SubmodelName instrument_;
   LocalisationThresholds limit_;
-  Choice choice_;
-  std::vector<double> worth_, coefficient_, at_;
-  const plant::Freedom* course_ = nullptr;
-  double floor_ = 1.0, excess_ = 1.0, course_share_ = 0.0;
+  BlockFit none_, best_;  // the constants alone, and with the chosen freedoms
+  std::vector<ChosenFreedom> chosen_;
+  double floor_ = 1.0;
 };
 
 }  // namespace thermopower::gap::engine

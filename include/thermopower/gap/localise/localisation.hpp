@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/localise/localise_balances.hpp>
+#include <thermopower/gap/localise/own_balances.hpp>
 #include <thermopower/plant/axis_balances.hpp>
 #include <thermopower/plant/bench_balances.hpp>
 
@@ -21,39 +22,32 @@ namespace thermopower::gap::engine {
 
 /// Recordings one after another, as far as they have the same input columns as the longest.
 inline Recording joined(const std::vector<Recording>& recordings) {
-  const Recording* longest = nullptr;
-  for (const Recording& one : recordings) {
-    if (longest == nullptr || one.rows() > longest->rows()) longest = &one;
-  }
   Recording out;
-  if (longest == nullptr) return out;
+  if (recordings.empty()) return out;
+  const Recording& longest =
+      *std::max_element(recordings.begin(), recordings.end(),
+                        [](const Recording& a, const Recording& b) { return a.rows() < b.rows(); });
   std::vector<const Recording*> parts;
-  Eigen::Index rows = 0;
-  for (const Recording& one : recordings) {
-    bool same = true;
-    for (const Column& column : longest->columns)
-      same = same && (one.has(column.name) || !longest->has(column.name));
-    if (!same) continue;
-    parts.push_back(&one);
-    rows += one.rows();
-  }
+  Eigen::Index rows = 0, at = 0;
+  for (const Recording& one : recordings)
+    if (std::all_of(longest.columns.begin(), longest.columns.end(),
+                    [&](const Column& column) { return one.has(column.name) || !longest.has(column.name); }))
+      parts.push_back(&one), rows += one.rows();
   if (parts.size() == 1) return *parts.front();
-  out.name = longest->name;
+  out.name = longest.name;
   out.t_s.resize(rows);
-  for (const Column& column : longest->columns) out.columns.push_back({column.name, Eigen::VectorXd(rows)});
-  Eigen::Index at = 0;
+  for (const Column& column : longest.columns)
+    out.columns.push_back({column.name, Eigen::VectorXd::Constant(rows, missing)});
   for (const Recording* part : parts) {
     out.t_s.segment(at, part->rows()) = part->t_s;
-    for (Column& column : out.columns) {
-      const Eigen::VectorXd* values = part->find(column.name);
-      if (values != nullptr) {
+    for (Column& column : out.columns)
+      if (const Eigen::VectorXd* values = part->find(column.name))
         column.values.segment(at, part->rows()) = *values;
-      } else {
-        column.values.segment(at, part->rows()).setConstant(missing);
-      }
+    for (RunSpan run : part->spans()) {
+      run.begin += at;
+      run.end += at;
+      out.runs.push_back(std::move(run));
     }
-    for (const RunSpan& run : part->spans())
-      out.runs.push_back({run.begin + at, run.end + at, run.label, run.goes_on, run.drawn_Ah});
     at += part->rows();
   }
   return out;
@@ -64,24 +58,12 @@ inline Recording stretches(const Recording& recording, Eigen::Index most) {
   if (recording.rows() <= most) return recording;
   constexpr Eigen::Index parts = 40;
   const Eigen::Index length = most / parts;
-  Recording out;
-  out.name = recording.name;
-  out.t_s.resize(length * parts);
-  for (const Column& column : recording.columns)
-    out.columns.push_back({column.name, Eigen::VectorXd(length * parts)});
+  std::vector<Recording> list;
   for (Eigen::Index p = 0; p < parts; ++p) {
-    const Eigen::Index begin = p * (recording.rows() - length) / (parts - 1), to = p * length;
-    out.t_s.segment(to, length) = recording.t_s.segment(begin, length);
-    for (std::size_t c = 0; c < recording.columns.size(); ++c) {
-      out.columns[c].values.segment(to, length) = recording.columns[c].values.segment(begin, length);
-    }
-    for (const RunSpan& run : recording.spans()) {
-      const Eigen::Index from = std::max(run.begin, begin), end = std::min(run.end, begin + length);
-      if (from < end)
-        out.runs.push_back({from - begin + to, end - begin + to, run.label, run.goes_on || run.begin < from});
-    }
+    const Eigen::Index begin = p * (recording.rows() - length) / (parts - 1);
+    list.push_back(recording.slice(begin, begin + length));
   }
-  return out;
+  return joined(list);
 }
 
 /// The balances of a model at the rows of recordings one after another. Recordings that lack input columns of the
@@ -95,6 +77,11 @@ public:
     for (const Recording& one : recordings)
       if (const auto problem = one.validate())
         throw InvalidInput("recording '" + one.name + "': " + *problem);
+    if (model.own) {
+      for (const Recording& one : recordings) own_.push_back(prepare(model, one));
+      sources_ = own_balances(model, catalogue, own_);
+      return;
+    }
     const Recording all = joined(recordings);
     if (all.rows() < LocalisationThresholds().least_rows) return;
     if (model.has_axis()) {
@@ -136,6 +123,7 @@ private:
   }
 
   Inputs axis_, bench_;
+  std::vector<Inputs> own_;
   std::vector<plant::BalanceSource> sources_;
 };
 

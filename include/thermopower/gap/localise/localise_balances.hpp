@@ -6,10 +6,8 @@
 #include <thermopower/gap/localise/judgement.hpp>
 #include <thermopower/gap/localise/missing_quantity.hpp>
 #include <thermopower/plant/balance.hpp>
-#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <optional>
@@ -35,63 +33,33 @@ struct Localisation {
   std::vector<MissingQuantity> quantities;  ///< one per faulty submodel (`effect` still empty)
 };
 
-/// Finds where a plant and recordings part, from residuals alone: it knows no effect and no equation.
-///
-/// Each balance is judged on its measured inputs, so that a fault upstream is not blamed on a part downstream. A submodel
-/// is accused if freedom in its equation, without any formula, predicts stretches of the recording that the fit has not
-/// seen. The constants may move within their slack. Where no freedom helps, the fault is still placed, by what orders it
-/// best.
-///
-/// - An instrument is at fault instead of a part of the plant if the freedom says that it may be (Freedom::or_instrument).
-///   The other balances must hold better without its reading or with it corrected.
-/// - Of several balances of one quantity (heat by the law, by the measured current) the best one counts. One that reads an
-///   instrument without a gap of its own is not asked.
-/// - What seems to depend on the reading of an instrument that is itself at fault is not blamed.
-///
-/// @param sources of one recording, those that place a fault best first
-/// @param signals number of signals of the plant, for the corrections of their readings
-Localisation localise_balances(const std::vector<plant::BalanceSource>& sources, int signals,
-                               const LocalisationOptions& options = {});
-
 namespace detail {
-
-inline std::string percent_text(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
-  return text;
-}
-
-inline std::string evidence_text(const std::string& given, const std::string& words, double share,
-                                 const Observed& o) {
-  const Ordered ordered = strongest_axis(o);
-  std::string text = given + ", " + words + " explains " + percent_text(share) +
-                     " of the excess on stretches that the fit has not seen.";
-  char more[80];
-  if (ordered.ratio > ordered.chance) {
-    std::snprintf(more, sizeof more, " most (correlation ratio %.2f, by chance up to %.2f).", ordered.ratio,
-                  ordered.chance);
-    text += " The " + to_string(o.quantity) + " follows " + plant::the_variable(ordered.axis) + more;
-  }
-  const double period = half_power_period(o.value, o.interval_s);
-  if (period > 0.0 && period < o.longest_run_s) {
-    std::snprintf(more, sizeof more, " Half of its power lies at periods above %.3g s.", period);
-    text += more;
-  }
-  return text;
-}
 
 /// A localisation under way.
 class Localiser {
 public:
   Localiser(const std::vector<plant::BalanceSource>& sources, int signals, const LocalisationOptions& options)
-      : sources_(sources), options_(options), limit_(options.thresholds), offsets_(signals, 0.0) {}
+      : sources_(sources), slack_(options.slack), limit_(options.thresholds), offsets_(signals, 0.0) {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& one) {
+        const plant::BalanceSource& other = sources[one.sources.front()];
+        return other.quantity == sources[i].quantity && other.signal == sources[i].signal;
+      });
+      if (same == groups_.end()) groups_.push_back({{i}});
+      else same->sources.push_back(i);
+    }
+  }
 
   Localisation run() {
-    judge_lone();
-    settle_instruments();
-    judge_alternatives();
+    // Balances that have no alternative come first, with the readings as they are.
+    for (Group& group : groups_)
+      if (group.sources.size() == 1) judge(group, group.sources.front(), offsets_);
+    for (std::size_t i = 0; i < groups_.size(); ++i) correct_by(i);
+    for (Group& group : groups_)
+      if (group.sources.size() > 1)
+        for (const std::size_t source : group.sources) judge(group, source, offsets_);
     for (const Group& group : groups_)
-      if (group.judgement) place(group);
+      if (group.judgement && group.judgement->gap()) place(group);
     sort_by(out_.where, [](const Location& one) { return -one.share; });
     return std::move(out_);
   }
@@ -99,230 +67,154 @@ public:
 private:
   /// The balances of one quantity.
   struct Group {
-    std::vector<std::size_t> sources;    ///< indices
-    std::optional<Judgement> judgement;  ///< of the one that counts
-    std::size_t counts = 0;              ///< its index among all sources
-    plant::ReadingOffsets offsets;       ///< by which its readings were corrected
-    bool instrument = false;             ///< the first freedom's instrument is at fault, not the plant
+    std::vector<std::size_t> sources;         ///< indices
+    std::optional<Judgement> judgement = {};  ///< of the one that counts
+    std::size_t counts = 0;                   ///< its index among all sources
+    plant::ReadingOffsets offsets = {};       ///< by which its readings were corrected
+    bool instrument = false;                  ///< the first freedom's instrument is at fault, not the plant
   };
 
-  static void settle(Group& group, std::size_t source, const plant::ReadingOffsets& offsets,
-                     Judgement judgement) {
+  /// Judges a balance. Of several of one quantity the best one counts. One that reads a signal without a gap of its own is not
+  /// asked: where law and measurement agree there is one flow, and the law's carries no noise.
+  void judge(Group& group, std::size_t source, const plant::ReadingOffsets& offsets) const {
+    const std::vector<plant::SignalName>& reads = sources_[source].reads;
+    if (group.judgement && std::none_of(reads.begin(), reads.end(), [&](const plant::SignalName& signal) {
+          return std::any_of(groups_.begin(), groups_.end(), [&](const Group& one) {
+            return one.judgement && one.judgement->signal() == signal && one.judgement->gap();
+          });
+        }))
+      return;
+    Judgement judgement(sources_[source].make(offsets), slack_, limit_);
+    if (group.judgement && !(judgement.cost() < group.judgement->cost())) return;
     group.judgement.emplace(std::move(judgement));
     group.counts = source;
     group.offsets = offsets;
   }
 
-  Judgement judged(std::size_t source, const plant::ReadingOffsets& offsets) const {
-    return Judgement(sources_[source].make(offsets), options_.slack, limit_);
-  }
-
-  /// Balances that have no alternative, with the readings as they are.
-  void judge_lone() {
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-      Group* group = nullptr;
-      for (Group& one : groups_)
-        if (sources_[one.sources.front()].quantity == sources_[i].quantity) group = &one;
-      if (group == nullptr) group = &groups_.emplace_back();
-      group->sources.push_back(i);
-    }
-    for (Group& group : groups_)
-      if (group.sources.size() == 1)
-        settle(group, group.sources.front(), offsets_, judged(group.sources.front(), offsets_));
-  }
-
-  static bool accuses(const Judgement& judgement, double explained) {
-    return judgement.gap() && !judgement.chosen().empty() && judgement.explained() > explained;
-  }
-
-  /// Corrections of readings: surely where a freedom is the instrument's own, on trial where it may be.
-  void settle_instruments() {
-    for (Group& group : groups_) {
-      if (!group.judgement || !accuses(*group.judgement, limit_.instrument_explained)) continue;
-      const Judgement& judgement = *group.judgement;
-      for (std::size_t k = 0; k < judgement.chosen().size(); ++k) {
-        const plant::Freedom& freedom = judgement.freedom(k);
-        if (!freedom.correction) continue;
-        plant::ReadingOffsets corrected = offsets_;
-        corrected[freedom.correction->signal] += freedom.correction->offset * judgement.coefficient(k);
-        if (!freedom.or_instrument) {
-          offsets_ = corrected;
-        } else if (k == 0 && better(group, corrected)) {
-          group.instrument = true;
-          offsets_ = corrected;
-        }
+  /// Corrects readings by what a balance of two instruments says: surely where the fault is the instrument's own. The other
+  /// instrument's are corrected where the other balances leave less then.
+  void correct_by(std::size_t index) {
+    Group& group = groups_[index];
+    if (!group.judgement || !group.judgement->is_explained_beyond(limit_.instrument_explained)) return;
+    for (const ChosenFreedom& chosen : group.judgement->chosen()) {
+      if (!chosen.freedom.correction) continue;
+      plant::ReadingOffsets corrected = offsets_;
+      corrected[chosen.freedom.correction->signal] += chosen.freedom.correction->offset * chosen.coefficient;
+      if (!chosen.freedom.or_instrument) {
+        offsets_ = corrected;
+        continue;
       }
-    }
-  }
-
-  /// Whether the other lone balances leave less with corrected readings; they are kept so where they do.
-  bool better(const Group& corrected_by, const plant::ReadingOffsets& corrected) {
-    double before = 0.0, after = 0.0;
-    std::vector<std::pair<Group*, Judgement>> again;
-    for (Group& group : groups_) {
-      if (&group == &corrected_by || !group.judgement) continue;
-      Judgement judgement = judged(group.sources.front(), corrected);
-      before += group.judgement->left();
-      after += judgement.left();
-      again.emplace_back(&group, std::move(judgement));
-    }
-    if (!(after < limit_.better_corrected * before)) return false;
-    for (auto& [group, judgement] : again)
-      settle(*group, group->sources.front(), corrected, std::move(judgement));
-    return true;
-  }
-
-  bool has_gap(const plant::SignalName& signal) const {
-    for (const Group& group : groups_)
-      if (group.judgement && group.judgement->balance().signal == signal && group.judgement->gap())
-        return true;
-    return false;
-  }
-
-  void judge_alternatives() {
-    for (Group& group : groups_) {
-      if (group.sources.size() == 1) continue;
-      for (const std::size_t source : group.sources) {
-        const std::vector<plant::SignalName>& reads = sources_[source].reads;
-        // Where law and measurement agree there is one flow, and the law's carries no noise.
-        const bool asked = std::any_of(reads.begin(), reads.end(),
-                                       [&](const plant::SignalName& one) { return has_gap(one); });
-        if (group.judgement && !asked) continue;
-        Judgement judgement = judged(source, offsets_);
-        if (group.judgement && !(judgement.cost() < group.judgement->cost())) continue;
-        settle(group, source, offsets_, std::move(judgement));
+      std::vector<Group> others = groups_;
+      double before = 0.0, after = 0.0;
+      for (std::size_t i = 0; i < groups_.size(); ++i) {
+        if (i == index || !groups_[i].judgement) continue;
+        others[i].judgement.reset();
+        judge(others[i], others[i].sources.front(), corrected);
+        before += groups_[i].judgement->left();
+        after += others[i].judgement->left();
       }
-    }
-    for (Group& group : groups_) {
-      if (!group.judgement || group.judgement->chosen().empty()) continue;
-      const plant::Freedom& freedom = group.judgement->freedom(0);
-      if (freedom.or_instrument && !freedom.correction)
-        group.instrument = holds_without(group.judgement->balance().signal);
+      if (!(after < before)) continue;
+      groups_ = std::move(others);
+      groups_[index].instrument = true;
+      offsets_ = corrected;
+      return;
     }
   }
 
-  /// Whether the balances that could do with or without a signal's reading hold better without.
+  /// Whether a balance with alternatives holds best without a signal's reading.
   bool holds_without(const plant::SignalName& signal) const {
-    for (const Group& group : groups_) {
-      if (group.sources.size() == 1 || !group.judgement) continue;
-      const auto& reads = sources_[group.counts].reads;
-      if (std::find(reads.begin(), reads.end(), signal) == reads.end()) return true;
-    }
-    return false;
+    return std::any_of(groups_.begin(), groups_.end(), [&](const Group& one) {
+      const auto& reads = sources_[one.counts].reads;
+      return one.sources.size() > 1 && one.judgement &&
+             std::find(reads.begin(), reads.end(), signal) == reads.end();
+    });
   }
 
-  /// Signals whose instrument is at fault.
-  bool distrusted(const plant::SignalName& signal) const {
-    for (const Group& group : groups_)
-      if (group.judgement && group.judgement->balance().signal == signal &&
-          accuses(*group.judgement, limit_.instrument_explained) &&
-          group.judgement->freedom(0).submodel == group.judgement->balance().instrument)
-        return true;
-    return false;
+  /// Whether a variable is the reading of another balance's instrument that is at fault.
+  bool is_misled(const plant::Balance& balance, const std::string& variable) const {
+    return std::any_of(balance.variables.begin(), balance.variables.end(), [&](const auto& one) {
+      return one.name == variable && one.from != balance.signal &&
+             std::any_of(groups_.begin(), groups_.end(), [&](const Group& other) {
+               return other.judgement && other.judgement->signal() == one.from &&
+                      other.judgement->is_explained_beyond(limit_.instrument_explained) &&
+                      other.judgement->chosen().front().freedom.submodel == other.judgement->instrument();
+             });
+    });
   }
 
-  /// Whether the variable is the reading of another balance's instrument that is at fault.
-  bool misled(const plant::Balance& balance, const std::string& variable) const {
-    for (const plant::OrderingVariable& one : balance.variables)
-      if (one.name == variable && one.from != balance.signal && distrusted(one.from)) return true;
-    return false;
+  /// Whether no other submodel can be at fault.
+  static bool is_alone(const plant::Balance& balance) {
+    return std::all_of(balance.freedoms.begin(), balance.freedoms.end(),
+                       [&](const plant::Freedom& one) { return one.submodel == balance.otherwise; });
+  }
+
+  /// The submodel of which a freedom has a variable that nothing else is told of.
+  static plant::SubmodelName submodel_by(const plant::Balance& balance, const OrderingAxis* axis) {
+    plant::SubmodelName found = balance.otherwise;
+    for (const plant::Freedom& one : balance.freedoms)
+      if (axis != nullptr && one.variable == axis->name && one.submodel != balance.instrument)
+        found = one.submodel;
+    return found;
   }
 
   void place(const Group& group) {
     const Judgement& judgement = *group.judgement;
-    if (!judgement.gap()) return;
     const plant::Balance balance = sources_[group.counts].make(group.offsets);
-    if (const plant::Freedom* course = judgement.course()) {
-      const Observed observed = observe(balance, true, limit_);
-      const plant::Freedom& one = scattering(balance, *course, observed);
-      report(one, balance.signal, one.submodel, judgement.course_share(), one.words, balance, observed,
-             judgement.before(), one.variable.empty() || one.is_nobodys);
-      return;
-    }
-    const bool named = !judgement.chosen().empty() && judgement.explained() > limit_.explained;
-    bool excused = false;
-    for (std::size_t k = 0; named && k < judgement.chosen().size(); ++k) {
-      const plant::Freedom& freedom = judgement.freedom(k);
-      if (misled(balance, freedom.variable)) {
-        excused = true;
-        continue;
+    if (judgement.is_explained_beyond(limit_.explained)) {
+      for (const ChosenFreedom& one : judgement.chosen()) {
+        const plant::Freedom& freedom = one.freedom;
+        if (is_misled(balance, freedom.variable)) continue;
+        const bool first = &one == &judgement.chosen().front();
+        Location location{balance.signal, freedom.submodel, one.worth, {}, {}};
+        if (first && freedom.or_instrument &&
+            (freedom.correction ? group.instrument : holds_without(balance.signal))) {
+          location.submodel = *freedom.or_instrument;
+          if (freedom.correction && !balance.reads.empty()) location.signal = balance.reads.front();
+        }
+        report(std::move(location), freedom.variable, one.words, balance);
       }
-      const bool instrument = k == 0 && group.instrument && freedom.or_instrument;
-      const plant::SubmodelName submodel = instrument ? *freedom.or_instrument : freedom.submodel;
-      const bool own = submodel == balance.instrument;
-      plant::SignalName signal = balance.signal;
-      if (instrument && freedom.correction) signal = signal_of(freedom.correction->signal, balance);
-      report(freedom, signal, submodel, judgement.worth(k), judgement.words(k), balance,
-             observe(balance, !own, limit_), judgement.before());
+    } else if (balance.otherwise != balance.instrument &&
+               (judgement.before() >= limit_.large || is_alone(balance))) {
+      // Of two instruments that part without an order nobody can say which it is.
+      const Observed observed = observe(balance, true, limit_);
+      report({balance.signal,
+              submodel_by(balance, strongest_axis(observed).axis),
+              std::max(0.0, judgement.explained()),
+              {},
+              {}},
+             "", "no freedom in one submodel helps much; the best", balance);
     }
-    // Of two instruments that part without an order nobody can say which it is.
-    if (named || excused || judgement.before() < limit_.large || balance.otherwise == balance.instrument)
-      return;
-    const Observed observed = observe(balance, true, limit_);
-    const std::string axis = strongest_axis(observed).axis;
-    plant::Freedom none;
-    none.variable = axis;
-    report(none, balance.signal, submodel_of(balance, axis), std::max(0.0, judgement.explained()),
-           "no freedom in one submodel helps much; the best", balance, observed, judgement.before());
   }
 
-  /// The name of a signal whose reading was corrected: one that the balance reads.
-  static plant::SignalName signal_of(plant::Signal signal, const plant::Balance& balance) {
-    return balance.reads.empty() ? plant::SignalName(signal) : balance.reads.front();
-  }
-
-  /// Of courses that follow no variable, the one whose scatter the missing quantity has.
-  static const plant::Freedom& scattering(const plant::Balance& balance, const plant::Freedom& course,
-                                          const Observed& observed) {
-    if (!course.variable.empty()) return course;
-    const plant::Freedom *with = nullptr, *without = nullptr;
-    std::string held;
-    for (const plant::OrderingVariable& one : balance.variables)
-      if (one.kind == plant::OrderingVariable::Kind::held && held.empty()) held = one.name;
-    for (const plant::Freedom& one : balance.courses) {
-      if (!one.scatters_with.empty()) with = &one;
-      else if (one.variable.empty()) without = &one;
+  void report(Location location, const std::string& variable, const std::string& words,
+              const plant::Balance& balance) {
+    const Observed observed = observe(balance, location.submodel != balance.instrument, limit_);
+    const Ordered ordered = strongest_axis(observed);
+    const OrderingAxis* named = observed.find(variable);
+    const OrderingAxis* axis = named != nullptr ? named : ordered.axis;
+    char text[80];
+    std::snprintf(text, sizeof text,
+                  " explains %.0f %% of the excess on stretches that the fit has not seen.",
+                  100.0 * location.share);
+    location.evidence = balance.given + ", " + words + text;
+    if (ordered.ratio > ordered.chance) {
+      std::snprintf(text, sizeof text, " most (correlation ratio %.2f, by chance up to %.2f).", ordered.ratio,
+                    ordered.chance);
+      location.evidence += " The " + to_string(observed.quantity) + " follows " +
+                           plant::the_variable(ordered.axis->name) + text;
     }
-    if (with == nullptr || without == nullptr) return course;
-    return scatters_with(observed, with->scatters_with, held) ? *with : *without;
-  }
-
-  /// The submodel that most freedoms along a variable accuse.
-  static plant::SubmodelName submodel_of(const plant::Balance& balance, const std::string& variable) {
-    std::vector<std::pair<plant::SubmodelName, int>> votes;
-    for (const plant::Freedom& freedom : balance.freedoms) {
-      if (freedom.variable != variable || freedom.submodel == balance.instrument) continue;
-      const auto found = std::find_if(votes.begin(), votes.end(),
-                                      [&](const auto& one) { return one.first == freedom.submodel; });
-      if (found == votes.end()) votes.emplace_back(freedom.submodel, 1);
-      else ++found->second;
+    if (axis != nullptr) {
+      location.regime = regime_of(observed, *axis, limit_);
+      MissingQuantity picture = picture_of(observed, *axis, limit_);
+      picture.signal = location.signal;
+      const bool is_drawn =
+          std::any_of(out_.quantities.begin(), out_.quantities.end(), [&](const MissingQuantity& one) {
+            return one.signal == picture.signal && one.variable == picture.variable;
+          });
+      if (picture.x.size() > 1 && !is_drawn && (location.share >= limit_.picture || out_.quantities.empty()))
+        out_.quantities.push_back(std::move(picture));
     }
-    const auto most = std::max_element(votes.begin(), votes.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    return most == votes.end() ? balance.otherwise : most->first;
-  }
-
-  void report(const plant::Freedom& freedom, const plant::SignalName& signal,
-              const plant::SubmodelName& submodel, double share, const std::string& words,
-              const plant::Balance& balance, const Observed& observed, double times_noise,
-              bool has_own_course = false) {
-    Location location;
-    location.times_noise = times_noise;
-    location.has_own_course = has_own_course;
-    location.signal = signal;
-    location.submodel = submodel;
-    location.share = std::clamp(share, 0.0, 1.0);
-    const OrderingAxis* axis = observed.find(freedom.variable);
-    if (axis == nullptr) axis = observed.find(strongest_axis(observed).axis);
-    if (axis != nullptr) location.regime = regime_of(observed, *axis, limit_);
-    location.evidence = evidence_text(balance.given, words, location.share, observed);
     add(std::move(location));
-    if (axis == nullptr || (share < limit_.picture && !out_.quantities.empty())) return;
-    MissingQuantity quantity = binned(observed, *axis, equal_count_edges(axis->values, limit_.picture_bins));
-    quantity.signal = signal;
-    for (const MissingQuantity& one : out_.quantities)
-      if (one.signal == quantity.signal && one.variable == quantity.variable) return;
-    if (quantity.x.size() > 1) out_.quantities.push_back(std::move(quantity));
   }
 
   /// One row per signal and submodel: a second fault of the same is added to the first.
@@ -332,15 +224,13 @@ private:
       if (location.share > one.share) std::swap(one.regime, location.regime);
       one.evidence += " " + location.evidence;
       one.share = std::min(1.0, one.share + location.share);
-      one.has_own_course = one.has_own_course || location.has_own_course;
-      one.times_noise = std::max(one.times_noise, location.times_noise);
       return;
     }
     out_.where.push_back(std::move(location));
   }
 
   const std::vector<plant::BalanceSource>& sources_;
-  LocalisationOptions options_;
+  double slack_;
   LocalisationThresholds limit_;
   plant::ReadingOffsets offsets_;
   std::vector<Group> groups_;
@@ -349,8 +239,22 @@ private:
 
 }  // namespace detail
 
+/// Finds where a plant and recordings part, from residuals alone: it knows no effect and no equation.
+///
+/// Each balance is judged on its measured inputs, so that a fault upstream is not blamed on a part downstream. A submodel
+/// is accused if freedom in its equation, without any formula, predicts stretches of the recording that the fit has not
+/// seen. The constants may move within their slack. Where no freedom helps, the fault is still placed, in the balance as a
+/// whole.
+///
+/// - An instrument is at fault instead of a part of the plant if the freedom says that it may be (Freedom::or_instrument).
+///   The other balances must hold better without its reading or with it corrected.
+/// - Of several balances of one quantity (heat by the law, by the measured current) the best one counts. One that reads an
+///   instrument without a gap of its own is not asked.
+///
+/// @param sources of one recording, those that place a fault best first
+/// @param signals number of signals of the plant, for the corrections of their readings
 inline Localisation localise_balances(const std::vector<plant::BalanceSource>& sources, int signals,
-                                      const LocalisationOptions& options) {
+                                      const LocalisationOptions& options = {}) {
   return detail::Localiser(sources, signals, options).run();
 }
 
@@ -362,28 +266,19 @@ inline void draw_supplied(const std::vector<plant::BalanceSource>& sources, int 
                           std::vector<MissingQuantity>& quantities,
                           const LocalisationThresholds& limit = {}) {
   for (MissingQuantity& q : quantities) {
-    if (q.x.size() < 2) continue;
-    // Of alternatives one that reads a simulated signal is taken: it holds by itself.
-    const plant::BalanceSource* chosen = nullptr;
-    for (const plant::BalanceSource& source : sources)
-      if (source.quantity == q.quantity &&
-          (chosen == nullptr || (chosen->reads.empty() && !source.reads.empty())))
-        chosen = &source;
-    const auto made = [&](const plant::BalanceSource& source) {
-      return source.make(plant::ReadingOffsets(signals, 0.0));
-    };
-    std::optional<plant::Balance> balance;
-    const bool restated = chosen == nullptr;
-    if (chosen != nullptr) balance = made(*chosen);
-    for (std::size_t i = 0; restated && !balance && i < sources.size(); ++i) {
-      plant::Balance one = made(sources[i]);
-      if (one.restated && one.restated->quantity == q.quantity) balance = std::move(one);
+    bool is_by_itself =
+        true;  // of alternatives one that reads a simulated signal is taken: it holds by itself
+    for (const plant::BalanceSource& source : sources) {
+      const auto reads = std::find(source.reads.begin(), source.reads.end(), q.signal);
+      if ((source.signal != q.signal && reads == source.reads.end()) ||
+          (q.effect.size() > 0 && (!is_by_itself || source.reads.empty())))
+        continue;
+      const plant::Balance balance = source.make(plant::ReadingOffsets(signals, 0.0));
+      const bool is_restated = balance.restated && balance.restated->quantity == q.quantity;
+      if (!is_restated && balance.quantity != q.quantity) continue;
+      set_effect(q, observe(balance, is_restated, limit));
+      is_by_itself = source.reads.empty();
     }
-    if (!balance) continue;
-    const Observed observed = observe(*balance, restated, limit);
-    const OrderingAxis* axis = observed.find(q.variable);
-    if (axis == nullptr) continue;
-    set_effect(q, axis->values, observed.value);
   }
 }
 

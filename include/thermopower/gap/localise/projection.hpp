@@ -5,6 +5,7 @@
 #include <thermopower/gap/localise/least_squares.hpp>
 #include <thermopower/gap/localise/rows.hpp>
 #include <thermopower/gap/localise/test_functions.hpp>
+#include <thermopower/gap/localise/thresholds.hpp>
 #include <thermopower/plant/balance.hpp>
 #include <thermopower/plant/samples.hpp>
 
@@ -26,6 +27,7 @@ namespace thermopower::gap::engine {
 
 /// Noise of one sample of the state that a balance is about.
 inline double state_noise(const plant::Balance& balance) {
+  if (balance.noise > 0.0) return balance.noise;
   const Eigen::VectorXd& from = balance.noise_from.size() > 0 ? balance.noise_from : balance.measured;
   return std::max(balance.noise_gain * plant::sample_noise(from, balance.rows->runs), 1e-9);
 }
@@ -36,24 +38,12 @@ inline Eigen::VectorXd capacity_of(const plant::Balance& balance) {
                                      : Eigen::VectorXd(Eigen::VectorXd::Ones(balance.rows->size()));
 }
 
-/// The values of a part of a direction, made where they are not at hand.
-class PartValues {
-public:
-  /// Keeps a reference to `part`, which must outlive it.
-  explicit PartValues(const plant::BalancePart& part)
-      : part_(part), made_(part.make ? part.make() : Eigen::VectorXd()) {}
-  /// One per row; empty where there are none.
-  const Eigen::VectorXd& operator()() const { return part_.make ? made_ : part_.values; }
-
-private:
-  const plant::BalancePart& part_;
-  Eigen::VectorXd made_;
-};
-
 /// Rows in which a balance, and every direction in which it may be off, is compared.
 class Projection {
 public:
   virtual ~Projection() = default;
+  /// How many they are.
+  virtual Eigen::Index rows() const = 0;
   /// The baseline's residual; positive if flow is missing.
   virtual Eigen::VectorXd residual() const = 0;
   /// The change by a direction.
@@ -67,117 +57,85 @@ public:
 
   /// The change by several directions, one column each.
   Eigen::MatrixXd columns(const std::vector<plant::Direction>& directions) const {
-    Eigen::MatrixXd out;
-    for (std::size_t k = 0; k < directions.size(); ++k) {
-      const Eigen::VectorXd one = column(directions[k]);
-      if (k == 0) out.resize(one.size(), static_cast<Eigen::Index>(directions.size()));
-      out.col(static_cast<Eigen::Index>(k)) = one;
-    }
+    Eigen::MatrixXd out(rows(), static_cast<Eigen::Index>(directions.size()));
+    for (Eigen::Index k = 0; k < out.cols(); ++k)
+      out.col(k) = column(directions[static_cast<std::size_t>(k)]);
     return out;
   }
+
+protected:
+  /// The values of a part of a direction, made where they are not at hand.
+  static Eigen::VectorXd values_of(const plant::BalancePart& part) {
+    return part.make ? part.make() : part.values;
+  }
 };
 
-/// Row by row, averaged where there are very many.
-class AlgebraicProjection : public Projection {
+/// Row by row, averaged where there are very many. Of a filtered balance these are responses of the baseline's own linear
+/// filter to the missing flow.
+class RowProjection : public Projection {
 public:
   /// Keeps a reference to `balance`, which must outlive it.
-  AlgebraicProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
-      : b_(balance), average_(balance.rows->runs, balance.measured, limit.rows) {}
-
-  Eigen::VectorXd residual() const override {
-    assert(b_.flow_sampled.size() == b_.rows->size());
-    Eigen::VectorXd left = b_.measured - b_.flow_sampled;
-    if (b_.flow_held.size() > 0) left -= b_.flow_held;
-    return average_(left);
-  }
-  Eigen::VectorXd column(const plant::Direction& direction) const override {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(b_.rows->size());
-    for (const plant::BalancePart& part : direction) {
-      const PartValues values(part);
-      if (values().size() > 0) sum += part.factor * values();
-    }
-    return average_(sum);
-  }
-  Eigen::MatrixXd starts() const override { return Eigen::MatrixXd(average_.rows(), 0); }
-  Eigen::VectorXi stretches(int folds) const override { return average_.folds(folds); }
-  double floor() const override {
-    const double sigma = state_noise(b_);
-    return sigma * sigma * static_cast<double>(average_.rows()) / static_cast<double>(average_.stride());
-  }
-
-private:
-  const plant::Balance& b_;
-  Thinning average_;
-};
-
-/// Responses of the baseline's own linear filter to missing flow.
-class FilteredProjection : public Projection {
-public:
-  /// Keeps a reference to `balance`, which must outlive it.
-  FilteredProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
+  RowProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
       : b_(balance),
         most_starts_(limit.most_starts),
         average_(balance.rows->runs, balance.measured, limit.rows),
-        capacity_(capacity_of(balance)),
-        kept_(balance.rows->size()) {
+        capacity_(capacity_of(balance)) {
+    Eigen::VectorXd flow = b_.flow_sampled;
+    if (b_.flow_held.size() > 0) flow += b_.flow_held;
+    simulated_ = flow;
+    if (b_.form != plant::BalanceForm::filtered) return;
+    kept_.resize(b_.rows->size());
     for (const RunSpan& run : b_.rows->runs)
       for (Eigen::Index i = run.begin; i < run.end; ++i)
         kept_[i] = std::exp(-b_.relaxation_per_s[i] * step_s(i, run));
     // From the measured start on, with everything but the state itself as measured: then what is left is exact
     // however far a constant is off.
-    Eigen::VectorXd flow = b_.flow_sampled;
-    if (b_.flow_held.size() > 0) flow += b_.flow_held;
     simulated_ = filtered(flow.cwiseQuotient(capacity_) + b_.relaxation_per_s.cwiseProduct(b_.state), true);
   }
 
+  Eigen::Index rows() const override { return average_.rows(); }
   Eigen::VectorXd residual() const override { return average_(b_.measured - simulated_); }
 
   Eigen::VectorXd column(const plant::Direction& direction) const override {
-    using Kind = plant::BalancePart::Kind;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(b_.rows->size());
-    for (const plant::BalancePart& part : direction) {
-      const PartValues values(part);
-      switch (part.kind) {
-        case Kind::flow_sampled:
-        case Kind::flow_held:
-          sum += part.factor * filtered(values().cwiseQuotient(capacity_), false);
-          break;
-        case Kind::store:
-          sum += part.factor * stored(values(), part.weight);
-          break;
-        case Kind::reading:
-          sum += part.factor * values();
-          break;
-        case Kind::reading_late:
-          sum += part.factor *
-                 (plant::lagged(simulated_, part.delay_s, false, b_.rows->t_s, b_.rows->runs) - simulated_);
-          break;
-      }
-    }
+    for (const plant::BalancePart& part : direction) sum += part.factor * response(part);
     return average_(sum);
   }
 
   Eigen::MatrixXd starts() const override {
     const auto& runs = b_.rows->runs;
-    const Eigen::Index count = static_cast<Eigen::Index>(runs.size());
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(b_.rows->size(), count <= most_starts_ ? count : 0);
+    const bool few = kept_.size() > 0 && static_cast<Eigen::Index>(runs.size()) <= most_starts_;
+    Eigen::MatrixXd out(average_.rows(), few ? static_cast<Eigen::Index>(runs.size()) : 0);
     for (Eigen::Index r = 0; r < out.cols(); ++r) {
-      double left = 1.0;
+      Eigen::VectorXd left = Eigen::VectorXd::Zero(b_.rows->size());
       const RunSpan& run = runs[static_cast<std::size_t>(r)];
-      for (Eigen::Index i = run.begin; i < run.end; ++i) {
-        out(i, r) = left;
-        left *= kept_[i];
-      }
+      for (Eigen::Index i = run.begin; i < run.end; ++i)
+        left[i] = i == run.begin ? 1.0 : left[i - 1] * kept_[i - 1];
+      out.col(r) = average_(left);
     }
-    return average_(out);
+    return out;
   }
-  Eigen::VectorXi stretches(int folds) const override { return average_.folds(folds); }
+  Eigen::VectorXi stretches(int folds) const override {
+    Eigen::VectorXi fold(average_.rows());
+    for (Eigen::Index i = 0; i < fold.size(); ++i) fold[i] = static_cast<int>(i * folds / fold.size());
+    return fold;
+  }
   double floor() const override {
     const double sigma = state_noise(b_);
     return sigma * sigma * static_cast<double>(average_.rows()) / static_cast<double>(average_.stride());
   }
 
 private:
+  Eigen::VectorXd response(const plant::BalancePart& part) const {
+    using Kind = plant::BalancePart::Kind;
+    if (part.kind == Kind::reading_late)
+      return plant::lagged(simulated_, part.delay_s, false, b_.rows->t_s, b_.rows->runs) - simulated_;
+    const Eigen::VectorXd values = values_of(part);
+    if (kept_.size() == 0 || part.kind == Kind::reading) return values;
+    return part.kind == Kind::store ? stored(values, part.weight)
+                                    : filtered(values.cwiseQuotient(capacity_), false);
+  }
+
   double step_s(Eigen::Index i, const RunSpan& run) const {
     return i + 1 < run.end ? b_.rows->t_s[i + 1] - b_.rows->t_s[i] : 0.0;
   }
@@ -216,7 +174,8 @@ private:
   Eigen::Index most_starts_;
   Thinning average_;
   Eigen::VectorXd capacity_;
-  Eigen::VectorXd kept_;  // of a state after each row's interval, if nothing flows: 0..1
+  Eigen::VectorXd
+      kept_;  // of a state after each row's interval, if nothing flows: 0..1; empty: there is no state
   Eigen::VectorXd simulated_;
 };
 
@@ -227,61 +186,38 @@ public:
   WeakProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
       : b_(balance), capacity_(capacity_of(balance)) {
     const double state = state_noise(balance) * capacity_.cwiseAbs().mean();
-    const double flow = balance.flow_measured.size() > 0
-                            ? plant::sample_noise(balance.flow_measured, balance.rows->runs)
-                            : 0.0;
     Eigen::VectorXd needed = balance.measured;
-    if (balance.flow_measured.size() > 0) needed += balance.flow_measured;
+    double flow = 0.0;
+    if (balance.flow_measured.size() > 0) {
+      needed += balance.flow_measured;
+      flow = plant::sample_noise(balance.flow_measured, balance.rows->runs);
+    }
     for (const int half_width : balance.half_widths) {
-      Width width{TestFunctions(balance.rows, needed, half_width,
-                                widths_.empty() ? limit.narrow_functions : limit.wide_functions),
-                  {},
-                  1.0};
-      width.held = width.functions.held_weights(balance.held_delay_s);
-      width.weight =
-          1.0 / std::hypot(state * width.functions.derivative_gain(), flow * width.functions.integral_gain());
-      rows_ += width.functions.size();
-      widths_.push_back(std::move(width));
+      TestFunctions functions(balance.rows, needed, half_width,
+                              widths_.empty() ? limit.narrow_functions : limit.wide_functions);
+      const double noise =
+          std::hypot(state * functions.derivative().gain(), flow * functions.integral().gain());
+      rows_ += functions.size();
+      RowIntegrals held = functions.held(balance.held_delay_s);
+      widths_.push_back({std::move(functions), std::move(held), 1.0 / noise});
     }
   }
 
+  Eigen::Index rows() const override { return rows_; }
   Eigen::VectorXd residual() const override {
     return joined([&](const Width& width) {
       const TestFunctions& f = width.functions;
-      Eigen::VectorXd left =
-          f.integral(capacity_).cwiseProduct(f.derivative(b_.state)) - f.integral(b_.flow_sampled);
-      if (b_.flow_held.size() > 0) left -= f.integral(width.held, b_.flow_held);
+      Eigen::VectorXd left = f.integral().of(capacity_).cwiseProduct(f.derivative().of(b_.state)) -
+                             f.integral().of(b_.flow_sampled);
+      if (b_.flow_held.size() > 0) left -= width.held.of(b_.flow_held);
       return left;
     });
   }
 
   Eigen::VectorXd column(const plant::Direction& direction) const override {
-    using Kind = plant::BalancePart::Kind;
     return joined([&](const Width& width) {
-      const TestFunctions& f = width.functions;
-      Eigen::VectorXd sum = Eigen::VectorXd::Zero(f.size());
-      for (const plant::BalancePart& part : direction) {
-        const PartValues values(part);
-        switch (part.kind) {
-          case Kind::flow_sampled:
-            sum += part.factor * f.integral(values());
-            break;
-          case Kind::flow_held:
-            sum += part.factor * (part.delay_s == 0.0
-                                      ? f.integral(width.held, values())
-                                      : f.held_integral(values(), b_.held_delay_s + part.delay_s));
-            break;
-          case Kind::store: {
-            Eigen::VectorXd taken = f.integral(capacity_).cwiseProduct(f.derivative(values()));
-            if (part.weight.size() > 0) taken = taken.cwiseProduct(f.integral(part.weight));
-            sum -= part.factor * taken;
-            break;
-          }
-          case Kind::reading:
-          case Kind::reading_late:
-            break;  // of the other forms
-        }
-      }
+      Eigen::VectorXd sum = Eigen::VectorXd::Zero(width.functions.size());
+      for (const plant::BalancePart& part : direction) sum += part.factor * integral(width, part);
       return sum;
     });
   }
@@ -292,9 +228,8 @@ public:
     Eigen::VectorXi fold(rows_);
     Eigen::Index at = 0;
     for (const Width& width : widths_)
-      for (const auto& one : width.functions.list())
-        fold[at++] = static_cast<int>(static_cast<double>(one.begin) * folds /
-                                      static_cast<double>(std::max<Eigen::Index>(1, b_.rows->size())));
+      for (Eigen::Index i = 0; i < width.functions.size(); ++i)
+        fold[at++] = static_cast<int>(width.functions.begin(i) * folds / b_.rows->size());
     return fold;
   }
   double floor() const override { return static_cast<double>(rows_); }
@@ -302,9 +237,31 @@ public:
 private:
   struct Width {
     TestFunctions functions;
-    TestFunctions::HeldWeights held;  // at the balance's own delay
+    RowIntegrals held;  // at the balance's own delay
     double weight;
   };
+
+  Eigen::VectorXd integral(const Width& width, const plant::BalancePart& part) const {
+    using Kind = plant::BalancePart::Kind;
+    const TestFunctions& f = width.functions;
+    const Eigen::VectorXd values = values_of(part);
+    switch (part.kind) {
+      case Kind::flow_sampled:
+        return f.integral().of(values);
+      case Kind::flow_held:
+        return part.delay_s == 0.0 ? width.held.of(values)
+                                   : f.held(b_.held_delay_s + part.delay_s).of(values);
+      case Kind::store: {
+        Eigen::VectorXd taken = f.integral().of(capacity_).cwiseProduct(f.derivative().of(values));
+        if (part.weight.size() > 0) taken = taken.cwiseProduct(f.integral().of(part.weight));
+        return -taken;
+      }
+      case Kind::reading:
+      case Kind::reading_late:
+        break;  // of the other forms
+    }
+    return Eigen::VectorXd::Zero(f.size());
+  }
 
   template <class Make>
   Eigen::VectorXd joined(Make&& make) const {
@@ -327,38 +284,24 @@ private:
 /// The projection of a balance's form; the balance must outlive it.
 inline std::unique_ptr<Projection> projection_of(const plant::Balance& balance,
                                                  const LocalisationThresholds& limit) {
-  switch (balance.form) {
-    case plant::BalanceForm::algebraic:
-      return std::make_unique<AlgebraicProjection>(balance, limit);
-    case plant::BalanceForm::filtered:
-      return std::make_unique<FilteredProjection>(balance, limit);
-    case plant::BalanceForm::weak:
-      return std::make_unique<WeakProjection>(balance, limit);
-  }
-  return nullptr;
+  if (balance.form == plant::BalanceForm::weak) return std::make_unique<WeakProjection>(balance, limit);
+  return std::make_unique<RowProjection>(balance, limit);
 }
 
 /// The directions of a freedom; of a scan those that leave least.
 inline Block block_of(const plant::Freedom& freedom, const Projection& projection, const Problem& problem) {
   Block block;
   block.lower = freedom.least;
-  block.penalty = freedom.penalty;
-  if (freedom.scan.empty()) {
-    block.columns = projection.columns(freedom.directions(0.0));
-    return block;
-  }
   double least = std::numeric_limits<double>::infinity();
   const auto attempt = [&](double at) {
     Eigen::MatrixXd columns = projection.columns(freedom.directions(at));
-    const double left = sum_of_squares_left(problem, columns);
+    const double left = freedom.scan.empty() ? 0.0 : sum_of_squares_left(problem, columns);
     if (!(left < least)) return;
     least = left;
     block.columns = std::move(columns);
     block.at = at;
   };
-  for (const double at : freedom.scan) attempt(at);
-  const double coarse = block.at;
-  for (const double factor : freedom.refine) attempt(coarse * factor);
+  for (const double at : freedom.scan.empty() ? std::vector<double>{0.0} : freedom.scan) attempt(at);
   if (block.columns.size() == 0) block.columns = Eigen::MatrixXd::Zero(problem.y.size(), 1);
   return block;
 }
@@ -369,18 +312,14 @@ inline Problem problem_of(const plant::Balance& balance, const Projection& proje
   Problem problem;
   problem.slack = slack;
   problem.y = projection.residual();
-  std::vector<Eigen::VectorXd> moved;
+  std::vector<plant::Direction> moved;
   for (const plant::ConstantDirection& constant : balance.constants) {
-    const plant::Direction direction = constant.direction();
-    if (!direction.empty()) moved.push_back(projection.column(direction));
+    plant::Direction direction = constant.direction();
+    if (!direction.empty()) moved.push_back(std::move(direction));
   }
-  problem.nuisance.resize(problem.y.size(), static_cast<Eigen::Index>(moved.size()));
-  for (std::size_t k = 0; k < moved.size(); ++k)
-    problem.nuisance.col(static_cast<Eigen::Index>(k)) = moved[k];
+  problem.nuisance = projection.columns(moved);
   problem.free = projection.starts();
-  assert(problem.free.rows() == problem.y.size());
   problem.fold = projection.stretches(problem.folds);
-  assert(problem.fold.size() == problem.y.size());
   return problem;
 }
 

@@ -2,107 +2,93 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/recording.hpp>
-#include <thermopower/plant/piecewise_linear.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <string>
 #include <vector>
 
 /// @file
-/// Rows as a localisation looks at them: ordered into bins, as a spectrum, averaged.
+/// Rows as a localisation looks at them: in bins of a variable, and averaged.
 
 namespace thermopower::gap::engine {
 
-/// Rows sorted into bins of a variable, about as many in each.
-class BinnedRows {
+/// Rows in bins of a variable, about as many in each. Rows of equal values are in the same one.
+class Bins {
 public:
+  /// The rows of one bin.
+  struct Bin {
+    double from = 0.0, to = 0.0;                   ///< least and largest value of the variable
+    double sum_at = 0.0;                           ///< of the variable
+    double count = 0.0, sum = 0.0, squares = 0.0;  ///< of what is measured there
+
+    double at() const { return sum_at / count; }  ///< mean of the variable
+    double mean() const { return sum / count; }   ///< of what is measured
+    /// Standard error of the mean.
+    double spread() const { return std::sqrt(std::max(0.0, squares / count - mean() * mean()) / count); }
+  };
+
   /// @param variable  one value per row; rows without one are in no bin
-  BinnedRows(const Eigen::VectorXd& variable, int bins) {
-    const std::vector<double> edges = equal_count_edges(variable, bins);
-    if (edges.size() < 3) return;
-    bands_ = static_cast<Eigen::Index>(edges.size());
-    band_.reserve(static_cast<std::size_t>(variable.size()));
-    for (const double one : variable) {
-      const auto band = std::upper_bound(edges.begin() + 1, edges.end() - 1, one) - edges.begin();
-      band_.push_back(std::isfinite(one) ? static_cast<int>(band) : none_);
+  /// @param most      how many bins, 1 or more
+  Bins(const Eigen::VectorXd& variable, int most) : variable_(variable) {
+    for (Eigen::Index row = 0; row < variable.size(); ++row)
+      if (std::isfinite(variable[row])) rows_.push_back(row);
+    sort_by(rows_, [&](Eigen::Index row) { return variable[row]; });
+    const std::size_t count = rows_.size(), bins = static_cast<std::size_t>(std::max(1, most));
+    for (std::size_t k = 1; k <= bins; ++k) {
+      std::size_t end = count * k / bins;
+      if (end <= (ends_.empty() ? 0 : ends_.back())) continue;
+      while (end < count && variable[rows_[end]] == variable[rows_[end - 1]]) ++end;
+      ends_.push_back(end);
     }
   }
 
-  /// Share of the variance of `value` that its mean over the bins explains, 0..1.
-  /// @param value  one per row; those that are not finite are left out
-  /// @param shift  rows by which it is moved against the variable, in a circle; 0 to the number of rows
-  double correlation_ratio(const Eigen::VectorXd& value, Eigen::Index shift = 0) const {
-    if (bands_ == 0) return 0.0;
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(bands_), count = Eigen::VectorXd::Zero(bands_);
-    assert(shift >= 0 && shift <= value.size() && value.size() >= static_cast<Eigen::Index>(band_.size()));
-    double total = 0.0, square = 0.0, n = 0.0;
-    Eigen::Index at = shift;
-    for (const int band : band_) {
-      if (at == value.size()) at = 0;
-      const double v = value[at++];
-      if (band == none_ || !std::isfinite(v)) continue;
-      sum[band] += v;
-      count[band] += 1.0;
-      total += v;
-      square += v * v;
-      n += 1.0;
+  /// The bins of what was measured. @param value  one per row, of which those that are not finite are left out
+  /// @param shift  rows by which it is moved against the variable, in a circle: 0 to the number of rows
+  std::vector<Bin> of(const Eigen::VectorXd& value, Eigen::Index shift = 0) const {
+    assert(value.size() == variable_.size() && shift >= 0 && shift <= value.size());
+    std::vector<Bin> bins;
+    std::size_t at = 0;
+    for (const std::size_t end : ends_) {
+      Bin bin{variable_[rows_[at]], variable_[rows_[end - 1]]};
+      for (; at < end; ++at) {
+        const Eigen::Index row = rows_[at] + shift;
+        const double v = value[row < value.size() ? row : row - value.size()];
+        if (!std::isfinite(v)) continue;
+        bin.sum_at += variable_[rows_[at]];
+        bin.count += 1.0;
+        bin.sum += v;
+        bin.squares += v * v;
+      }
+      if (bin.count > 0.0) bins.push_back(bin);
     }
-    if (n < 4.0) return 0.0;
-    const double variance = square - total * total / n;
-    double between = -total * total / n;
-    for (Eigen::Index k = 0; k < bands_; ++k)
-      if (count[k] > 0.0) between += sum[k] * sum[k] / count[k];
-    return variance > 0.0 ? std::min(1.0, std::max(0.0, between / variance)) : 0.0;
+    return bins;
+  }
+
+  /// Share of the variance of what was measured that the means of its bins explain, 0..1. Parameters as for of().
+  double correlation_ratio(const Eigen::VectorXd& value, Eigen::Index shift = 0) const {
+    double count = 0.0, sum = 0.0, squares = 0.0, of_means = 0.0;
+    for (const Bin& one : of(value, shift)) {
+      count += one.count;
+      sum += one.sum;
+      squares += one.squares;
+      of_means += one.sum * one.mean();
+    }
+    const double variance = count > 0.0 ? squares - sum * sum / count : 0.0;
+    return variance > 0.0 ? std::clamp((of_means - sum * sum / count) / variance, 0.0, 1.0) : 0.0;
   }
 
 private:
-  static constexpr int none_ = -1;
-  Eigen::Index bands_ = 0;  ///< 0: the variable hardly varies
-  std::vector<int> band_;   ///< of each row
+  const Eigen::VectorXd& variable_;
+  std::vector<Eigen::Index> rows_;  // in the order of the variable
+  std::vector<std::size_t> ends_;   // of each bin in them
 };
 
-/// The period in s above which half of a residual's power lies (from the cumulated periodogram of at most
-/// 2048 block means).
-inline double half_power_period(const Eigen::VectorXd& residual, double interval_s) {
-  assert(interval_s > 0.0);
-  const Eigen::Index block = std::max<Eigen::Index>(1, residual.size() / 1024);
-  const Eigen::Index n = residual.size() / block;
-  if (n < 8) return 0.0;
-  Eigen::VectorXd x(n);
-  for (Eigen::Index i = 0; i < n; ++i) x[i] = residual.segment(i * block, block).mean();
-  x.array() -= x.mean();
-  std::vector<double> power;
-  double total = 0.0;
-  for (Eigen::Index k = 1; k <= n / 2; ++k) {
-    const double w = rad_per_turn * static_cast<double>(k) / static_cast<double>(n);
-    double re = 0.0, im = 0.0;
-    const double cw = std::cos(w), sw = std::sin(w);
-    double c = 1.0, s = 0.0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      re += x[i] * c;
-      im += x[i] * s;
-      const double next = c * cw - s * sw;
-      s = s * cw + c * sw;
-      c = next;
-    }
-    power.push_back(re * re + im * im);
-    total += power.back();
-  }
-  double sum = 0.0;
-  for (std::size_t k = 0; k < power.size(); ++k) {
-    sum += power[k];
-    if (sum >= 0.5 * total)
-      return interval_s * static_cast<double>(block) * static_cast<double>(n) / static_cast<double>(k + 1);
-  }
-  return 0.0;
-}
-
-/// Averages `stride` rows at a time inside each run, so that a million rows cost what ten thousand do.
+/// Averages some rows at a time inside each run, so that a million rows cost what ten thousand do.
 class Thinning {
 public:
   /// @param most  rows that are left, about; rows where `measured` has none do not count into an average
@@ -110,15 +96,13 @@ public:
     Eigen::Index rows = 0;
     for (const RunSpan& run : runs) rows += run.size();
     stride_ = std::max<Eigen::Index>(1, (rows + most - 1) / most);
-    for (const RunSpan& run : runs) {
+    for (const RunSpan& run : runs)
       for (Eigen::Index i = run.begin; i < run.end; i += stride_) {
         const std::size_t before = kept_.size();
-        for (Eigen::Index k = i; k < std::min(i + stride_, run.end); ++k) {
+        for (Eigen::Index k = i; k < std::min(i + stride_, run.end); ++k)
           if (std::isfinite(measured[k])) kept_.push_back(k);
-        }
         if (kept_.size() > before) end_.push_back(kept_.size());
       }
-    }
   }
 
   /// How many rows are left.
@@ -126,28 +110,18 @@ public:
   /// How many rows an average is of, at most.
   Eigen::Index stride() const { return stride_; }
 
-  /// The averages of columns of the full length: as many columns, rows() rows.
-  Eigen::MatrixXd operator()(const Eigen::MatrixXd& full) const {
-    assert(kept_.empty() || kept_.back() < full.rows());
-    Eigen::MatrixXd out(rows(), full.cols());
-    for (Eigen::Index column = 0; column < full.cols(); ++column) {
-      std::size_t k = 0;
-      for (Eigen::Index i = 0; i < rows(); ++i) {
-        const std::size_t begin = k, end = end_[static_cast<std::size_t>(i)];
-        double sum = 0.0;
-        for (; k < end; ++k) sum += full(kept_[k], column);
-        out(i, column) = sum / static_cast<double>(end - begin);
-      }
+  /// The averages of a column of the full length: rows() of them.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& full) const {
+    assert(kept_.empty() || kept_.back() < full.size());
+    Eigen::VectorXd out(rows());
+    std::size_t k = 0;
+    for (Eigen::Index i = 0; i < rows(); ++i) {
+      const std::size_t begin = k, end = end_[static_cast<std::size_t>(i)];
+      double sum = 0.0;
+      for (; k < end; ++k) sum += full[kept_[k]];
+      out[i] = sum / static_cast<double>(end - begin);
     }
     return out;
-  }
-
-  /// Which of `count` contiguous stretches each row belongs to, 0 to count - 1.
-  Eigen::VectorXi folds(int count) const {
-    Eigen::VectorXi fold(rows());
-    for (Eigen::Index i = 0; i < rows(); ++i)
-      fold[i] = static_cast<int>(i * count / std::max<Eigen::Index>(1, rows()));
-    return fold;
   }
 
 private:

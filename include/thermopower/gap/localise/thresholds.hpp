@@ -24,8 +24,6 @@ struct LocalisationThresholds {
   double no_help = 0.9;         ///< share of what the constants leave that a freedom must get below to be one
   double as_good = 0.35;        ///< more than the best by this share of it, and
   double as_good_floor = 0.15;  ///< by this much more, is as good: the fewer directions are taken
-  double trace = 0.003;         ///< share of the excess that simplicity may cost, while no more than
-  double trace_left = 12.0;     ///< this is left
   double needs_a_second = 2.0;  ///< one freedom that leaves more may be joined by a second,
   double second_gain = 0.6;     ///< which must take this share of what the first leaves
   double second_share = 0.004;  ///< and this share of all there was
@@ -34,21 +32,9 @@ struct LocalisationThresholds {
   double explained = 0.3;  ///< share of the excess that the chosen freedoms must explain to be named
   double large = 15.0;     ///< an unexplained gap that leaves less on unseen stretches is not placed
   double instrument_explained =
-      0.5;  ///< share from which an instrument's fault excuses what depends on its reading
-  double better_corrected =
-      1.0;                 ///< an instrument is at fault where other balances leave less with its correction
+      0.5;                 ///< share from which an instrument's fault corrects what depends on its reading
   double per_block = 0.5;  ///< price of a freedom, as a share, where alternatives of a balance compete
   double picture = 0.15;   ///< share below which no further picture is drawn
-
-  // Courses of many directions, for what follows no variable.
-  double weak_course = 15.0;         ///< asked about where the chosen freedoms leave more, of a weak form,
-  double filtered_course = 8.0;      ///< or of a filtered one
-  double course_of_seen = 0.03;      ///< and more than this share of what the constants leave
-  double filtered_explained = 0.99;  ///< and a filtered form's freedoms explain less
-  double course_better = 0.5;        ///< share of what the freedoms leave that a course must get below
-  double weak_per_direction =
-      4.0;  ///< rows that a direction of a course costs, of a weak form (its rows overlap)
-  double filtered_per_direction = 2.0;  ///< or of a filtered one
 
   // How much is looked at.
   Eigen::Index rows = 8000;  ///< of an algebraic or filtered balance, after averaging: enough for any freedom
