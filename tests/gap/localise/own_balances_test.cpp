@@ -9,6 +9,7 @@
 #include "../plants.hpp"
 
 #include <thermopower/gap/localise/localise_balances.hpp>
+#include <thermopower/plant/piecewise_linear.hpp>
 
 #include <cmath>
 #include <memory>

@@ -6,6 +6,7 @@
 #include <thermopower/gap/localise/judgement.hpp>
 #include <thermopower/gap/localise/missing_quantity.hpp>
 #include <thermopower/plant/balance.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cstdio>
