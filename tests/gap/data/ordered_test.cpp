@@ -155,6 +155,7 @@ TEST_CASE("rows sorted into bins say how much of a value their variable explains
     CHECK(rows.correlation_ratio(vector_of(value), static_cast<Eigen::Index>(shift)) ==
           Approx(between / variance).margin(0.01));
   }
-  CHECK(Bins(Eigen::VectorXd::Constant(50, 1.0), bins)
-            .correlation_ratio(Eigen::VectorXd::LinSpaced(50, 0, 1)) < 1e-12);
+  CHECK(
+      Bins(Eigen::VectorXd::Constant(50, 1.0), bins).correlation_ratio(Eigen::VectorXd::LinSpaced(50, 0, 1)) <
+      1e-12);
 }

@@ -22,9 +22,12 @@ class Bins {
 public:
   /// The rows of one bin.
   struct Bin {
-    double from = 0.0, to = 0.0;                   ///< least and largest value of the variable
-    double sum_at = 0.0;                           ///< of the variable
-    double count = 0.0, sum = 0.0, squares = 0.0;  ///< of what is measured there
+    double from = 0.0;     ///< least value of the variable
+    double to = 0.0;       ///< largest value of the variable
+    double sum_at = 0.0;   ///< sum of the variable
+    double count = 0.0;    ///< rows in which something is measured
+    double sum = 0.0;      ///< sum of what is measured
+    double squares = 0.0;  ///< sum of its squares
 
     double at() const { return sum_at / count; }  ///< mean of the variable
     double mean() const { return sum / count; }   ///< of what is measured
