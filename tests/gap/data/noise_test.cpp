@@ -6,7 +6,6 @@
 #include "coloured_noise.hpp"
 
 #include <thermopower/gap/data/noise.hpp>
-#include <thermopower/gap/report/noise_at_a_row.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -202,41 +201,5 @@ TEST_CASE(
     const double found = noise_sd(errors, gaps, 0.0, {}, measured);
     CHECK(found > 0.5 * noise);
     CHECK(found < most * noise);
-  }
-}
-
-TEST_CASE(
-    "the noise in single rows is told by the rows around, whatever its tails and whatever moves below it") {
-  for (const bool tails : {false, true}) {
-    CAPTURE(tails);
-    Random random(11);
-    constexpr Eigen::Index rows = 20000;
-    Eigen::VectorXd noise(rows), values(rows);
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      noise[i] = tails ? heavy_tailed(random) : normal(random);
-      values[i] = 40.0 * std::sin(0.05 * static_cast<double>(i)) + noise[i];
-    }
-    const std::vector<thermopower::plant::RunSpan> runs{{0, rows, ""}};
-    const NoiseAtARow told(values, runs);
-    // Of forty rows at a time, as windows may begin at: the mean square told against the noise's own, and against that of all.
-    double missed = 0.0, missed_by_all = 0.0, of_all = 0.0, told_of_all = 0.0;
-    for (Eigen::Index begin = 0; begin + 4000 <= rows; begin += 100) {
-      double of_noise = 0.0, of_told = 0.0;
-      for (Eigen::Index i = begin + 7; i < begin + 4000; i += 100) {
-        of_noise += noise[i] * noise[i] / 40.0;
-        of_told += std::pow(told.share_at(i, runs.front()), 2.0) / 40.0;
-      }
-      missed += std::pow(of_told - of_noise, 2.0);
-      missed_by_all += std::pow(1.0 - of_noise, 2.0);
-      of_all += of_noise;
-      told_of_all += of_told;
-    }
-    CHECK(told_of_all == Approx(of_all).epsilon(0.1));
-    CHECK(missed < 0.4 * missed_by_all);
-    const thermopower::plant::RunSpan begins{4000, rows, ""};
-    CHECK(told.share_at(4003, begins) == 1.0);  // too little before it tells
-    CHECK(told.share_at(4004, begins) != 1.0);
-    const Eigen::VectorXd rounded = (values.array() / 8.0).round() * 8.0;
-    CHECK(NoiseAtARow(rounded, runs).share_at(4004, begins) == 1.0);  // neighbours are rounded alike
   }
 }

@@ -6,7 +6,6 @@
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
-#include <thermopower/gap/report/noise_at_a_row.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +13,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -163,36 +161,6 @@ inline double with_wander(double noise, double wander, double rms) {
   return wander > 0.0 ? std::max(noise, std::min(std::hypot(noise, wander), rms)) : noise;
 }
 
-/// The noise of every signal as large as it was in the row that a window of an axis starts from.
-class NoiseOfStarts {
-public:
-  /// @param sigma  noise of each signal, over all rows
-  explicit NoiseOfStarts(const std::array<double, signal_count>& sigma) : sigma_(sigma) {}
-
-  /// As measured_start_sd() of a rollout takes it.
-  std::array<double, signal_count> at(const Segment& segment) {
-    std::array<double, signal_count> there = sigma_;
-    if (!segment.axis) return there;
-    const Inputs& inputs = *segment.inputs;
-    auto& readings = of_[&inputs];
-    for (std::size_t i = 0; i < signal_count; ++i) {
-      const Signal signal = static_cast<Signal>(i);
-      if (!inputs.judged(signal)) continue;
-      if (!readings[i]) readings[i].emplace(inputs.of(signal), inputs.runs);
-      // Clearly more than the noise: there the motion bends. Clearly less: that lasts longer than these rows tell.
-      constexpr double clearly_more = 1.5, clearly_less = 0.7;
-      const double of_rows = readings[i]->sd() / sigma_[i];
-      if (of_rows < clearly_more && of_rows > clearly_less)
-        there[i] *= readings[i]->share_at(segment.begin, segment.run);
-    }
-    return there;
-  }
-
-private:
-  std::array<double, signal_count> sigma_;
-  std::map<const Inputs*, std::array<std::optional<NoiseAtARow>, signal_count>> of_;
-};
-
 /// The part of an error in one coordinate of a start that another, fitted coordinate takes back. By least squares: units of
 /// the latter for one of the former.
 /// @param signal  place of that signal among the plant's
@@ -239,11 +207,10 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
   Readings readings;
   const auto rollout = plant.rollout(model, catalogue, {}, {0, largest_start_size(plant, segments)},
                                      SimulationMode::free_running);
-  NoiseOfStarts starts(sigma);
   for (Segment segment : segments) {
     segment.carries_on = false;
     const Inputs& inputs = *segment.inputs;
-    Start sd = rollout->measured_start_sd(segment, starts.at(segment));
+    Start sd = rollout->measured_start_sd(segment, sigma);
     if (first == FirstReadings::as_they_are) sd = sd.cwiseMax(known_off(plant, *rollout, segment, sigma, sd));
     rollout->roll(segment, Start::Zero(sd.size()), readings);
     const std::vector<Signal>& signals = plant.signals(segment);
