@@ -20,14 +20,14 @@ using namespace thermopower::gap::engine;
 namespace {
 
 /// A joint whose command moves it `moves` times as much as its model says.
-UnitEvidence joint(double moves) {
+UnitEvidence joint(double moves, double forwards_nats = 0.0) {
   UnitEvidence one;
   one.columns = {"t_s", "drive_A", "angle_deg", "rate_dps"};
   one.is_axis = true;
   one.interval_s = 5e-3;
   one[UnitMeasure::slope].value = 1.0;
-  one[UnitMeasure::slope].sd = 0.03;
   one[UnitMeasure::drive].value = moves;
+  one[UnitMeasure::drive].forwards_nats = forwards_nats;
   return one;
 }
 
@@ -38,11 +38,13 @@ std::string likeliest(const std::vector<UnitEvidence>& parts) {
   const UnitPosterior posterior(parts, 0.0);
   const auto all = [&](const UnitHypothesis& one) { return UnitPosterior::Assignment(parts.size(), &one); };
   const UnitHypothesis* best = &table.front();
-  double most = posterior.of(all(*best), *best) + UnitPosterior::beliefs.sure;
-  for (const UnitHypothesis& one : table)
+  double most = posterior.of(all(*best), *best) + UnitThresholds().sure;
+  for (const UnitHypothesis& one : table) {
+    if (one.exchanges()) continue;
     if (const double now = posterior.of(all(one), one);
         now > most && posterior.holds_everywhere(one, all(one)))
       most = now, best = &one;
+  }
   return best->is_none() ? "" : best->mend();
 }
 
@@ -67,9 +69,7 @@ TEST_CASE("a factor that units have is a unit, and one that they do not have is 
 TEST_CASE("a unit or a sign holds in every recording of a source") {
   CHECK(likeliest({joint(1e-3), joint(1e-3)}) == "--column drive_A=drive_A:mA");
   CHECK(likeliest({joint(1e-3), joint(1.0), joint(1.0)}).empty());
-  UnitEvidence forwards = joint(1.0), backwards = joint(1.0);
-  forwards[UnitMeasure::drive].forwards_nats = 12.0;
-  backwards[UnitMeasure::drive].forwards_nats = -12.0;
+  const UnitEvidence forwards = joint(1.0, 12.0), backwards = joint(1.0, -12.0);
   CHECK(likeliest({backwards, backwards}) == "--column drive_A=drive_A:-A");
   CHECK(likeliest({backwards, forwards}).empty());
 }
