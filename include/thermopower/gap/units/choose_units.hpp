@@ -192,7 +192,7 @@ private:
       return;
     }
     Finding said{unit.kind(),
-                 severity(first, unit.column()),
+                 severity(unit.column()),
                  part.from->recording().name,
                  unit.column(),
                  unit.words(),
@@ -235,8 +235,7 @@ private:
   }
 
   /// A column that the model does not use stops nothing.
-  Severity severity(std::size_t part, const std::string& column) const {
-    assert(part < parts_.size());
+  Severity severity(const std::string& column) const {
     const bool is_temperature = column == "motor_C" || column == "ambient_C";
     return is_temperature && !model_.has_thermal() && !model_.has_current() ? Severity::warning
                                                                             : Severity::error;
@@ -244,6 +243,7 @@ private:
 
   /// The measures that the hypothesis mends, in parentheses.
   std::string words_of_evidence(std::size_t part) const {
+    assert(part < parts_.size() && chosen_.size() == parts_.size());
     const UnitHypothesis& unit = *chosen_[part];
     const UnitEvidence& of = evidence_[part];
     std::string text;
@@ -272,7 +272,7 @@ private:
       const TemperatureRange& range = column == "motor_C" ? of.motor : of.air;
       if (!range.is_known() || !range.is_odd()) continue;
       findings.push_back({FindingKind::impossible_samples,
-                          severity(part, column),
+                          severity(column),
                           parts_[part].from->recording().name,
                           column,
                           "is about " + short_number(range.typical) + ": no temperature of " +
