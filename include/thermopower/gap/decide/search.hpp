@@ -13,7 +13,6 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -105,7 +104,7 @@ public:
   /// The same, fitted to the end, those that keep states among them even where the best candidate leaves no more than noise.
   void add_whatever_the_room(std::vector<Candidate>& candidates, const std::vector<Promise>& sets) const {
     const FirstLook look(fittest(candidates), glimpse_, coarse_);
-    add_all_fitted(candidates, sets, Attribution(look.some, look.few));
+    add_fitted(candidates, sets, Attribution(look.some, look.few));
     finish(candidates, sets.size() + fitted_to_the_end);
   }
 
@@ -286,25 +285,10 @@ private:
     });
   }
 
-  /// Adds sets, fitted. Those that keep states, which cost most and have more to be bent with, only where the others leave more
-  /// than noise.
-  /// @param sets    the most promising one first, where that is known
-  /// @param coarse  what they are first fitted to
-  void add_fitted(std::vector<Candidate>& candidates, std::vector<Promise> sets,
-                  const Attribution& coarse) const {
-    const auto plain = [&](const Promise& one) { return !wants_longer(one.together); };
-    const auto rest = std::stable_partition(sets.begin(), sets.end(), plain);
-    const std::vector<Promise> later(std::make_move_iterator(rest), std::make_move_iterator(sets.end()));
-    sets.erase(rest, sets.end());
-    add_all_fitted(candidates, sets, coarse);
-    constexpr double room = decision.room_for_costly;
-    if (!fittest(candidates).train.within(room * room)) add_all_fitted(candidates, later, coarse);
-  }
-
   /// Fits sets from the fits of their parts, and takes them among the candidates. The first is fitted to the end, the
   /// others as long as they are in its sight.
-  void add_all_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
-                      const Attribution& coarse) const {
+  void add_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
+                  const Attribution& coarse) const {
     if (sets.empty()) return;
     assert(std::all_of(sets.begin(), sets.end(),
                        [&](const Promise& one) { return one.near < candidates.size(); }));

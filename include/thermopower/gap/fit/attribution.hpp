@@ -4,7 +4,6 @@
 
 #include <thermopower/gap/fit/candidate.hpp>
 #include <thermopower/gap/fit/fitter.hpp>
-#include <thermopower/gap/fit/shared_scan.hpp>
 #include <thermopower/gap/fit/signal_sums.hpp>
 #include <thermopower/gap/fit/traps.hpp>
 #include <thermopower/gap/data/noise.hpp>
@@ -266,10 +265,9 @@ private:
   LinearGuess guess(const FitProblem& problem, const Explanation& explanation,
                     const std::vector<Eigen::VectorXd>& starts) const {
     const Candidate candidate = unfitted(explanation);
-    const std::vector<double> costs =
-        SharedScan(problem, candidate.explanation, candidate.list).costs(starts);
+    Fitter fitter(problem, candidate.explanation, candidate.list);
     std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({costs[i], i});
+    for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({fitter.scan(starts[i]), i});
     std::sort(order.begin(), order.end());
     LinearGuess found{order.front().first, {}};
     order.resize(std::min(tried_, order.size()));

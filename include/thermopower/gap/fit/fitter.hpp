@@ -170,17 +170,6 @@ public:
     return promised_by_a_step(here);
   }
 
-  /// The same from measured starts, where the residuals of every segment there are known with their derivatives.
-  double scan(const Eigen::VectorXd& at, const std::vector<FitProblem::Residuals>& known) {
-    FitResult here;
-    here.point = at;
-    here.starts = problem_.measured_starts();
-    clear(view_);
-    for (std::size_t i = 0; i < known.size(); ++i) add_segment(i, known[i], here.starts[i], view_);
-    add_priors(at, view_);
-    return promised_by_a_step(here);
-  }
-
 private:
   struct Eliminated {
     Eigen::MatrixXd inverse;   ///< of the starts' own block
