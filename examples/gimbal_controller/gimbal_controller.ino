@@ -85,7 +85,7 @@ void receive() {
     for (bool got = codec.receive(static_cast<uint8_t>(Serial.read()), micros()); got; got = codec.next()) {
       const sbgc::RealtimeData* telemetry = codec.realtime_data();
       if (telemetry == nullptr) {
-        sbgc::hear_answer(codec.frame(), gimbal);
+        if (!sbgc::hear_power(codec.frame(), gimbal)) sbgc::hear_answer(codec.frame(), gimbal);
         continue;
       }
       const bool is_power_reported = telemetry->motor_power(0) != 0;

@@ -252,7 +252,7 @@ TEMPLATE_TEST_CASE("a board that confirms POWER and does not obey is found by re
             1, tp::sbgc::variable::power_roll, static_cast<std::uint8_t>(power), 0, 0, 0};
         const tp::sbgc::Frame answer = {tp::sbgc::command::set_adj_vars_val, sizeof payload, payload,
                                         tp::sbgc::Version::v1};
-        REQUIRE(tp::sbgc::hear_answer(answer, under_test.gimbal));
+        REQUIRE(tp::sbgc::hear_power(answer, under_test.gimbal));
       }
       const auto& command = under_test.step(telemetry);
       if (cycle < 200) power = command.power[0];

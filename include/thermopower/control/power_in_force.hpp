@@ -129,7 +129,7 @@ public:
     board_.answers = true;
     board_.is_confirmed = !is_read_;
   }
-  /// The board was asked for its POWER and has answered: `sbgc::hear_answer()` tells it. Of a board whose telemetry reports none.
+  /// The board was asked for its POWER and has answered: `sbgc::hear_power()` tells it. Of a board whose telemetry reports none.
   /// @param power  its value, 0 .. 255
   void read_back(uint8_t axis, uint8_t power) noexcept {
     if (axis >= axis_count) return;

@@ -155,7 +155,7 @@ struct GetAdjVarsView {
 };
 
 /// @brief Asks for POWER of roll, pitch and yaw: a CONFIRM says that the board took a command, and this that it has it. Send it after
-/// every command to a board whose telemetry reports no POWER; `hear_answer()` takes the answer.
+/// every command to a board whose telemetry reports no POWER; `hear_power()` takes the answer.
 /// @ingroup sbgc
 inline GetAdjVars<3> ask_power() noexcept {
   return GetAdjVars<3>{{variable::power_roll, variable::power_pitch, variable::power_yaw}};

@@ -80,37 +80,13 @@ struct Error {
   }
 };
 
-namespace detail {
-
-/// Tells what POWER the board says it has; a gimbal without `read_back()` does not ask.
-template <class Gimbal>
-auto hear_powers(const AdjVarsView& vars, Gimbal& gimbal, int) noexcept
-    -> decltype(static_cast<void>(gimbal.read_back(uint8_t(0), uint8_t(0)))) {
-  for (uint8_t axis = 0; axis < 3; ++axis) {
-    int32_t power = 0;
-    if (!vars.find(static_cast<uint8_t>(variable::power_roll + axis), power)) continue;
-    // What cannot be is the most there is.
-    gimbal.read_back(axis, power >= 0 && power <= 255 ? static_cast<uint8_t>(power) : uint8_t(255));
-  }
-}
-template <class Gimbal>
-void hear_powers(const AdjVarsView&, Gimbal&, long) noexcept {}
-
-}  // namespace detail
-
 /// @brief Tells a gimbal controller what the board answered to its commands. A CONFIRM of another command than one that
 /// sets POWER changes nothing.
-/// @param frame   any frame  @param gimbal  has `confirmed(const Confirm&)` and `refused()`, and `read_back(axis, power)` where
-/// POWER is asked for with `ask_power()`, as GimbalController
+/// @param frame   any frame  @param gimbal  has `confirmed(const Confirm&)` and `refused()`, as GimbalController
 /// @return was it an answer?
 /// @ingroup sbgc
 template <class Gimbal>
 bool hear_answer(const Frame& frame, Gimbal& gimbal) noexcept {
-  AdjVarsView vars;
-  if (vars.read(frame)) {
-    detail::hear_powers(vars, gimbal, 0);
-    return true;
-  }
   if (frame.id == command::error) {
     gimbal.refused();
     return true;
@@ -118,6 +94,23 @@ bool hear_answer(const Frame& frame, Gimbal& gimbal) noexcept {
   Confirm confirm;
   if (!confirm.read(frame)) return false;
   gimbal.confirmed(confirm);
+  return true;
+}
+
+/// @brief Tells a gimbal controller what POWER the board says it has: the answer to ask_power().
+/// @param frame   any frame  @param gimbal  has `read_back(axis, power)`, as GimbalController
+/// @return was it one with variables of the board?
+/// @ingroup sbgc
+template <class Gimbal>
+bool hear_power(const Frame& frame, Gimbal& gimbal) noexcept {
+  AdjVarsView vars;
+  if (!vars.read(frame)) return false;
+  for (uint8_t axis = 0; axis < 3; ++axis) {
+    int32_t power = 0;
+    if (!vars.find(static_cast<uint8_t>(variable::power_roll + axis), power)) continue;
+    // What cannot be is the most there is.
+    gimbal.read_back(axis, power >= 0 && power <= 255 ? static_cast<uint8_t>(power) : uint8_t(255));
+  }
   return true;
 }
 
