@@ -141,3 +141,25 @@ TEST_CASE("A limit holds for every explanation that is drawn from what the recor
     for (int i = 0; i < 100; ++i)
       CHECK(use_of(predictor.free_run(next.schedule, one.draw(random)), close).share <= 1.0);
 }
+
+TEST_CASE("An explanation with one cause more than a likelier one is no rival to it") {
+  const Diagnosis diagnosis = diagnose(drum(), {play(one_way(), 0.012, 0.0, 1)});
+  const DiagnosedGap gap = gap_of(drum(), diagnosis);
+  const std::vector<Possible> open = still_open(gap, standard_catalogue());
+  REQUIRE(!open.empty());
+  for (std::size_t i = 1; i < open.size(); ++i)
+    if (open[i].is_tied) CHECK(!open[i].is_more_than(open.front()));
+  CHECK(open.front().is_more_than(open.front()));
+}
+
+TEST_CASE("The larger the rest that the likeliest explanation leaves, the less an experiment tells") {
+  DiagnosedGap gap = gap_of(drum(), diagnose(drum(), {play(one_way(), 0.012, 0.0, 1)}));
+  const double before = design_experiment(gap, limits()).expected_right;
+  for (Watched& one : gap.watched) one.left = 1000.0 * one.noise;
+  CHECK(gap.times_noise() == Approx(1000.0));
+  const Design next = design_experiment(gap, limits());
+  INFO(next.sentence);
+  CHECK(next.expected_right < before);
+  CHECK(next.ending == Ending::none_of_these);
+  CHECK_THAT(next.sentence, ContainsSubstring("leaves 1000 times the noise"));
+}

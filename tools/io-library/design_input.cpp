@@ -243,7 +243,9 @@ design::DiagnosedGap parse_report(const std::string& name, const std::string& te
     for (const auto& [signal, score] : root.at("gap").items()) {
       const auto known = plant::SignalName(signal).known();
       const double noise = number_or_nan(score.at("noise_floor"));
-      if (known && noise > 0.0) gap.watched.push_back({*known, noise});
+      if (known && noise > 0.0)
+        gap.watched.push_back(design::Watched::of(*known, noise, number_or_nan(score.at("recalibrated")),
+                                                  number_or_nan(score.at("after"))));
       if (score.at("horizon_s").is_number()) gap.horizon_s = score["horizon_s"].get<double>();
     }
     for (const Json& entry : root.at("ranking")) gap.ranking.push_back(explanation(entry));

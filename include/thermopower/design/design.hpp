@@ -49,8 +49,9 @@ public:
     if (explanations_.empty())
       throw InvalidInput("the report has no explanation with its numbers: diagnose again");
     if (is_over()) return result_;
-    const std::vector<double> weights = weights_of(explanations_, options_);
     const Predictor predictor(gap_, catalogue_, limits_);
+    leave_out_those_without_inputs(predictor);
+    const std::vector<double> weights = weights_of(explanations_, options_);
     Search search(predictor, explanations_, limits_, options_);
     search.screen(options_.screening * options_.rows);
     if (search.tried().empty()) return nothing_possible(search.stopped_by());
@@ -76,11 +77,25 @@ public:
   }
 
 private:
+  /// The limits give no value to an input of theirs: the experiment says nothing of them. The sentence names the likely ones.
+  void leave_out_those_without_inputs(const Predictor& predictor) {
+    const auto end = std::stable_partition(explanations_.begin(), explanations_.end(),
+                                           [&](const Possible& one) { return predictor.has_inputs_of(one); });
+    std::vector<std::string> names;
+    for (auto one = end; one != explanations_.end(); ++one)
+      if (one->probability() >= options_.likely) names.push_back(name_of(one->effects()));
+    if (!names.empty())
+      left_out_ = " Left out, because the limits give no value to an input of it: " + in_a_row(names) + ".";
+    if (end != explanations_.begin()) explanations_.erase(end, explanations_.end());
+  }
+
   /// Whether the report leaves nothing to tell apart.
   bool is_over() {
     const Possible& first = explanations_.front();
-    const bool is_sure = first.probability() >= options_.sure,
-               is_unexplained = gap_.verdict == Verdict::unexplained;
+    const bool is_sure = first.probability() >= options_.sure;
+    // A report may call a gap unexplained over a small rest.
+    const bool is_unexplained =
+        gap_.verdict == Verdict::unexplained && (!is_sure || gap_.times_noise() > options_.much_left);
     const auto is_tied = [](const Possible& one) { return one.is_tied; };
     if (gap_.verdict == Verdict::no_gap || (is_sure && first.effects().empty() && !is_unexplained)) {
       end(Ending::enough, "Enough: nothing is missing.");
@@ -89,10 +104,10 @@ private:
           "None of these is still the likeliest: no named cause closes the gap" +
               (first.is_curve() ? "; " + name_of(first.effects()) + " has " + two_digits(first.probability())
                                 : std::string()) +
-              ". Record what nobody has recorded yet, or add an effect of your own.");
+              ". " + advice);
     } else if (is_sure && std::none_of(explanations_.begin(), explanations_.end(), is_tied)) {
       end(Ending::enough,
-          "Enough: " + name_of(first.effects()) + " has " + two_digits(first.probability()) + ".");
+          "Enough: " + name_of(first.effects()) + " has " + two_digits(first.probability()) + rest() + ".");
     } else {
       return false;
     }
@@ -102,9 +117,18 @@ private:
     return true;
   }
 
+  /// What a sure explanation leaves, where that is more than noise.
+  std::string rest() const {
+    constexpr double hardly = 1.5;
+    if (gap_.times_noise() < hardly) return {};
+    char text[64];
+    std::snprintf(text, sizeof text, "; it leaves %.1f times the noise", gap_.times_noise());
+    return text;
+  }
+
   Design& end(Ending ending, const std::string& sentence) {
     result_.ending = ending;
-    result_.sentence = sentence;
+    result_.sentence = sentence + left_out_;
     return result_;
   }
 
@@ -142,6 +166,11 @@ private:
     std::vector<std::string> names;
     for (const Possible& one : explanations_)
       if (names.size() < 3) names.push_back(name_of(one.effects()));
+    if (gap_.times_noise() > options_.much_left)
+      return end(Ending::none_of_these, "None of these is still the likeliest: " + names.front() +
+                                            " leaves " + Limits::text_of(std::round(gap_.times_noise())) +
+                                            " times the noise, and no experiment within these limits tells " +
+                                            in_a_row(names) + " apart against that. " + advice);
     std::string sentence = "No experiment within these limits can decide between " + in_a_row(names) +
                            ": the best one that was found is expected to be right in " + per_cent() +
                            " of all cases";
@@ -205,11 +234,14 @@ private:
     return std::to_string(std::lround(std::min(100.0 * result_.expected_right, 99.0))) + " %";
   }
 
+  static constexpr const char* advice = "Record what nobody has recorded yet, or add an effect of your own.";
+
   const DiagnosedGap& gap_;
   const Limits& limits_;
   const DesignOptions options_;
   const Catalogue& catalogue_;
-  const std::vector<Possible> explanations_;
+  std::vector<Possible> explanations_;
+  std::string left_out_;
   Design result_;
 };
 

@@ -7,6 +7,7 @@
 #include <thermopower/plant/signal.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -16,10 +17,16 @@ namespace thermopower::design {
 
 using namespace gap;  // NOLINT: what a user of a design names comes from the diagnosis, too
 
-/// A signal that will be recorded, and its noise.
+/// A signal that will be recorded, and how far a prediction is off.
 struct Watched {
   Signal signal = Signal::motor_C;  ///< that is watched
   double noise = 1.0;               ///< standard deviation in the signal's unit, > 0
+  double left = noise;              ///< what the likeliest explanation leaves of it, `noise` or more
+
+  /// From a report's scores. @param recalibrated  with refitted constants  @param after  with the named causes
+  static Watched of(Signal signal, double noise, double recalibrated, double after) {
+    return {signal, noise, std::fmax(noise, std::fmin(recalibrated, after))};
+  }
 };
 
 /// What a diagnosis leaves open, as a design needs it.
@@ -29,6 +36,13 @@ struct DiagnosedGap {
   std::vector<RankedExplanation> ranking;   ///< likeliest first
   std::vector<Watched> watched;             ///< the signals that were judged, with their noise
   double horizon_s = 0.5;                   ///< of the axis' windows, s
+
+  /// What the likeliest explanation leaves, in units of the noise: the most of all signals, 1 or more.
+  double times_noise() const {
+    double most = 1.0;
+    for (const Watched& one : watched) most = std::max(most, one.left / one.noise);
+    return most;
+  }
 };
 
 /// What was diagnosed, without a report in between.
@@ -36,7 +50,7 @@ inline DiagnosedGap gap_of(const Model& model, const Diagnosis& diagnosis) {
   DiagnosedGap gap{model, diagnosis.verdict, diagnosis.ranking, {}, 0.5};
   for (const GapScore& one : diagnosis.gap) {
     if (const auto known = one.signal.known(); known && one.noise_floor > 0.0)
-      gap.watched.push_back({*known, one.noise_floor});
+      gap.watched.push_back(Watched::of(*known, one.noise_floor, one.recalibrated, one.after));
     if (one.horizon_s) gap.horizon_s = *one.horizon_s;
   }
   return gap;

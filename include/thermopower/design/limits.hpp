@@ -82,10 +82,11 @@ struct Limits {
     return otherwise;
   }
 
-  /// The shortest experiment that is proposed, s: a diagnosis needs some readings, and holds a part of them out.
+  /// The shortest experiment that is proposed, s: a diagnosis needs some readings, holds a part of them out, and asks how far their
+  /// prediction reaches.
   double shortest_s() const {
-    constexpr double rows = 150.0;
-    return std::min(duration_s, rows * row_s);
+    constexpr double rows = 150.0, of_the_longest = 0.25;
+    return std::min(duration_s, std::max(rows * row_s, of_the_longest * duration_s));
   }
 
   /// The varied input of that name, or nullptr.

@@ -22,12 +22,15 @@ struct DesignOptions {
   double least_weight =
       0.02;  ///< of an open one: an experiment is for a diagnosis that is wrong by more than it says
 
+  double much_left =
+      3.0;  ///< multiple of the noise that the likeliest explanation leaves: from here on the right one may be none of these
+
   // How the search spends its time.
   double rows = 6e6;             ///< simulated rows that a design may spend: 5 s on one core
   double screening = 0.35;       ///< share of them to find what can be told apart at all
   double raising = 0.1;          ///< the same to find out whether a raised limit would help
-  double enough_right = 0.98;    ///< beyond it a shorter experiment is worth more than a surer one
-  double whole_duration = 0.06;  ///< what the longest experiment costs, in units of being right
+  double enough_right = 0.995;   ///< beyond it a shorter experiment is worth more than a surer one
+  double whole_duration = 0.03;  ///< what the longest experiment costs, in units of being right
 
   // How near a limit it goes.
   double use_in_search = 0.8;       ///< share of a limit, with few draws of the parameters

@@ -78,6 +78,14 @@ public:
   /// Whether only what was known before the data speaks against it: it predicts them as well as the likeliest one.
   bool is_tied = false;
 
+  /// Whether it is another explanation with more: it has all of its causes. Constants are free in every explanation.
+  bool is_more_than(const Possible& other) const {
+    const auto &mine = explanation_.effects, &its = other.explanation_.effects;
+    return std::all_of(its.begin(), its.end(), [&](const CatalogueEntry* one) {
+      return std::find(mine.begin(), mine.end(), one) != mine.end();
+    });
+  }
+
   /// How many directions its parameters are uncertain in.
   int directions() const { return static_cast<int>(axes_.cols()); }
   /// The fit.
@@ -163,15 +171,22 @@ inline std::vector<Possible> still_open(const DiagnosedGap& gap, const Catalogue
         const bool is_likely = one->probability >= options.likely || other->probability >= options.likely;
         return is_likely ? one->probability > other->probability : ratio(one) < ratio(other);
       });
-  std::vector<Possible> all;
+  const auto predicts_as_well = [&](const RankedExplanation* one) {
+    return ratio(one) <= options.as_well * ratio(order.front()) &&
+           one->train_gain >= order.front()->train_gain - options.hardly_less_likely;
+  };
+  std::vector<Possible> all, as_good;
   bool needs_curve = !order.empty() && order.front()->probability < options.sure;
   for (const RankedExplanation* one : order) {
     std::optional<Possible> possible = Possible::of(gap.model, catalogue, *one);
     if (!possible) continue;
-    // A curve can be like any cause of its place: that it predicts as well says nothing against the cause.
-    possible->is_tied = !all.empty() && !possible->is_curve() &&
-                        ratio(one) <= options.as_well * ratio(order.front()) &&
-                        one->train_gain >= order.front()->train_gain - options.hardly_less_likely;
+    // A curve can be like any cause of its place, and a likelier explanation with more is like it: that they predict as well says
+    // nothing against the cause.
+    possible->is_tied = !all.empty() && !possible->is_curve() && predicts_as_well(one) &&
+                        std::none_of(as_good.begin(), as_good.end(), [&](const Possible& likelier) {
+                          return possible->is_more_than(likelier);
+                        });
+    if (predicts_as_well(one)) as_good.push_back(*possible);
     const bool is_open =
         (one->probability >= options.likely || possible->is_tied) && all.size() < options.most_open;
     const bool is_first_curve =

@@ -48,8 +48,8 @@ inline LimitUse use_of(const Motion& motion, const Limits& limits) {
   return most;
 }
 
-/// What an explanation predicts of an experiment: each watched signal in units of its noise, one after the other, at evenly spaced
-/// rows.
+/// What an explanation predicts of an experiment: each watched signal in units of what the likeliest explanation leaves of it, one
+/// after the other, at evenly spaced rows.
 struct Prediction {
   Eigen::VectorXd middle;  ///< at the fit
   Eigen::MatrixXd
@@ -62,7 +62,7 @@ struct Prediction {
 class Predictor {
 public:
   /// Readings of a signal that count: neighbouring ones err alike, and more would promise too much.
-  static constexpr Eigen::Index most_readings = 200;
+  static constexpr Eigen::Index most_readings = 40;
 
   /// All must outlive the object.
   Predictor(const DiagnosedGap& gap, const Catalogue& catalogue, const Limits& limits)
@@ -70,6 +70,15 @@ public:
 
   /// How many rows were simulated so far: what a search has spent.
   double rows_simulated() const { return rows_simulated_; }
+
+  /// Whether an explanation has every input that it needs: its simulation of an experiment at rest has a value in every row.
+  bool has_inputs_of(const Possible& one) const {
+    Experiment rest;
+    rest.courses.resize(limits_.vary.size());
+    const Motion motion = free_run(schedule_of(rest, limits_), one.fit());
+    return std::all_of(motion.begin(), motion.end(),
+                       [](const Eigen::VectorXd& values) { return values.allFinite(); });
+  }
 
   /// The whole experiment from its start on.
   Motion free_run(const Recording& schedule, const ParameterPoint& point) const {
@@ -141,14 +150,14 @@ private:
   Eigen::VectorXd readings(const Motion& motion) const {
     std::vector<double> list;
     for (const Watched& one : gap_.watched) {
-      assert(one.noise > 0.0);
+      assert(one.left > 0.0);
       const Eigen::VectorXd& values = motion[static_cast<std::size_t>(one.signal)];
       const Eigen::Index step =
           std::max<Eigen::Index>(1, (values.size() + most_readings - 1) / most_readings);
       for (Eigen::Index row = step - 1; row < values.size(); row += step) {
         // A simulation that runs away is far from every other one, and no farther than counts.
         constexpr double far = 1e10;
-        const double value = values[row] / one.noise;
+        const double value = values[row] / one.left;
         list.push_back(std::isfinite(value) ? std::clamp(value, -far, far) : far);
       }
     }

@@ -36,8 +36,8 @@ inline double separation(const Prediction& one, const Prediction& other) {
 /// the middle. @param separation  in standard deviations, 0 or more
 inline double confusion(double separation) { return 0.5 * std::erfc(0.5 * separation / std::sqrt(2.0)); }
 
-/// The separation at which choosing between two explanations fails in one of twenty experiments.
-inline constexpr double told_apart = 3.29;
+/// The separation at which choosing between two explanations fails in one of four experiments: with less they are one class.
+inline constexpr double told_apart = 1.35;
 
 /// Separations of all pairs: symmetric, its diagonal is 0.
 using Separations = Eigen::MatrixXd;
