@@ -65,8 +65,9 @@ public:
     // Causes that these limits hide from each other are not an answer; those that nothing tells apart are one.
     if (classes.count == 1) {
       const std::optional<RaisedLimit> helpful = helpful_limit(search, weights);
-      return helpful || result_.classes.front().probability < options_.sure ? cannot_decide(helpful)
-                                                                            : enough();
+      const bool is_sure =
+          result_.classes.front().probability >= options_.sure && gap_.times_noise() <= options_.much_left;
+      return helpful || !is_sure ? cannot_decide(helpful) : enough();
     }
     std::optional<Tried> best = search.improve((1.0 - options_.screening) * options_.rows, classes);
     if (best) best = search.made_safe(best->experiment);
