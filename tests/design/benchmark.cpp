@@ -5,7 +5,7 @@
 // record, diagnose, design, play the schedule on the plant, diagnose again. The same with other experiments in the place of the
 // designed one, within the same limits.
 //
-//     design_benchmark [--cases N] [--seed S] [--draws 3,17] [--contenders designed,random,chirp,fixed,fisher] [--violations N] [--alike 1]
+//     design_benchmark [--cases N] [--seed S] [--draws 3,17] [--contenders designed,random,chirp,fixed,fisher] [--violations N] [--alike 1] [--svg FILE]
 //
 // --alike 1 plays experiments also where one class is left: do others tell its members apart?
 //
@@ -15,6 +15,8 @@
 
 #include "../gap_benchmark/axis_draw.hpp"
 #include "../gap_benchmark/bench_draw.hpp"
+
+#include "small_multiples.hpp"
 
 #include <thermopower/design/design.hpp>
 #include <thermopower/gap/diagnose.hpp>
@@ -221,12 +223,26 @@ Answer answer_of(const DiagnosedGap& gap, const Alike& alike, const HiddenCase& 
   double together = 0.0;
   for (const RankedExplanation& one : gap.ranking)
     if (holds(group, one.effects)) together += one.probability;
-  if (together < named) return Answer::open;
+  // A single sure cause is ambiguous where refitted constants do without it.
+  if (together < named || (gap.verdict == Verdict::ambiguous && group.size() == 1)) return Answer::open;
   // Where no name is right, the likeliest has to be a curve.
   const auto is_it = [&](const Ids& ids) { return is_truth(ids, hidden); };
   const bool right =
       hidden.truth.empty() ? is_it(best->effects) : std::any_of(group.begin(), group.end(), is_it);
   return right ? Answer::right : Answer::wrong;
+}
+
+/// Probability of the hidden cause and of what is alike.
+double probability_of_truth(const DiagnosedGap& gap, const Alike& alike, const HiddenCase& hidden) {
+  double sum = 0.0;
+  for (const RankedExplanation& one : gap.ranking) {
+    std::vector<Ids> group{one.effects};
+    for (const std::vector<Ids>& each : alike)
+      if (std::find(each.begin(), each.end(), one.effects) != each.end()) group = each;
+    if (std::any_of(group.begin(), group.end(), [&](const Ids& ids) { return is_truth(ids, hidden); }))
+      sum += one.probability;
+  }
+  return sum;
 }
 
 /// Whether the first recording leaves anything to decide: a report that names no cause with 0.9.
@@ -251,13 +267,16 @@ std::optional<Recording> fixed_kind(Shape shape, bool is_chirp, const Limits& li
   return safe->schedule;
 }
 
+/// Probability after so many seconds of experiments, in units of the longest one; it holds until the next.
+using Truth = std::vector<std::pair<double, double>>;
+
 struct Tally {
   int right = 0, wrong = 0, open = 0;
-  int cannot = 0,
-      cannot_rightly =
-          0;  ///< of the open: the design says that no experiment decides; the truth is in its list
-  std::vector<double>
-      duration_s;  ///< until it was resolved rightly, in units of the longest experiment; else infinite
+  /// Of the open: the design says that no experiment decides; the truth is in its list.
+  int cannot = 0, cannot_rightly = 0;
+  /// Until it was resolved rightly, in units of the longest experiment; else infinite.
+  std::vector<double> duration_s;
+  std::vector<Truth> truths;  ///< of the hidden cause, in each case with one
 };
 
 struct Spent {
@@ -325,6 +344,30 @@ std::optional<Recording> next_of(const std::string& contender, int number, const
   return most->schedule;
 }
 
+/// Draws the mean probability of the hidden cause against seconds, for each contender.
+void draw_truths(const std::string& path, const std::vector<std::string>& contenders,
+                 const std::map<std::string, Tally>& tallies) {
+  const char* const colours[] = {"#0b7285", "#c92a2a", "#868e96", "#e67700", "#5f3dc4"};
+  figures::Panel panel;
+  panel.x_label = "experiments, in units of the longest one";
+  panel.y_label = "probability of the hidden cause, mean";
+  panel.y_to = 1.0;
+  for (std::size_t k = 0; k < contenders.size(); ++k) {
+    figures::Series series{contenders[k], colours[k % 5], figures::Mark::line, {}, {}};
+    const std::vector<Truth>& truths = tallies.at(contenders[k]).truths;
+    for (double t = 0.0; t <= 2.0; t += 0.01) {
+      double sum = 0.0;
+      for (const Truth& one : truths)
+        sum +=
+            std::find_if(one.rbegin(), one.rend(), [&](const auto& step) { return step.first <= t; })->second;
+      series.x.push_back(t);
+      series.y.push_back(sum / static_cast<double>(truths.size()));
+    }
+    panel.series.push_back(std::move(series));
+  }
+  figures::write_small_multiples(path, "How sure the hidden cause becomes", {panel}, 1);
+}
+
 std::vector<std::uint64_t> numbers_of(const char* list) {
   std::vector<std::uint64_t> numbers;
   std::stringstream text(list);
@@ -340,11 +383,12 @@ int main(int count, char** values) {
   bool also_alike = false;
   std::uint64_t seed = 1;
   std::vector<std::uint64_t> only;
-  std::string list = "designed,random,chirp,fixed,fisher";
+  std::string svg, list = "designed,random,chirp,fixed,fisher";
   for (int i = 1; i + 1 < count; i += 2) {
     if (!std::strcmp(values[i], "--cases")) cases = std::atoi(values[i + 1]);
     else if (!std::strcmp(values[i], "--seed")) seed = std::strtoull(values[i + 1], nullptr, 10);
     else if (!std::strcmp(values[i], "--draws")) only = numbers_of(values[i + 1]);
+    else if (!std::strcmp(values[i], "--svg")) svg = values[i + 1];
     else if (!std::strcmp(values[i], "--alike")) also_alike = std::atoi(values[i + 1]) != 0;
     else if (!std::strcmp(values[i], "--contenders")) list = values[i + 1];
     else if (!std::strcmp(values[i], "--violations")) violations = std::atoi(values[i + 1]);
@@ -404,6 +448,7 @@ int main(int count, char** values) {
       Answer answer = Answer::open;
       double spent_s = 0.0;
       std::string steps;
+      Truth truth{{0.0, probability_of_truth(gap, alike, *hidden)}};
       for (int turn = 0; answer == Answer::open; ++turn) {
         std::optional<Recording> schedule;
         try {
@@ -453,8 +498,10 @@ int main(int count, char** values) {
           steps += std::string(" refused: ") + error.what();
           break;
         }
-        // What is unexplained is open until the design has said what to make of it.
-        if (now.verdict != Verdict::unexplained) answer = answer_of(now, alike, *hidden);
+        truth.emplace_back(spent_s / hidden->limits.duration_s, probability_of_truth(now, alike, *hidden));
+        // What is unexplained, or leaves much, is open until the design has said what to make of it.
+        if (now.verdict != Verdict::unexplained && now.times_noise() <= DesignOptions().much_left)
+          answer = answer_of(now, alike, *hidden);
         else if (contender != "designed" && hidden->truth.empty()) answer = Answer::right;
         const auto best =
             std::max_element(now.ranking.begin(), now.ranking.end(),
@@ -465,6 +512,7 @@ int main(int count, char** values) {
                       now.times_noise(), spent_s / hidden->limits.duration_s);
         steps += " [" + std::string(to_string(now.verdict)) + " " + name_of(best->effects) + text;
       }
+      if (!hidden->truth.empty()) tally.truths.push_back(truth);
       tally.right += answer == Answer::right;
       tally.wrong += answer == Answer::wrong;
       tally.open += answer == Answer::open;

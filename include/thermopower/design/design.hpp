@@ -93,19 +93,17 @@ private:
   /// Whether the report leaves nothing to tell apart.
   bool is_over() {
     const Possible& first = explanations_.front();
-    const bool is_sure = first.probability() >= options_.sure;
-    // A report may call a gap unexplained over a small rest.
+    const bool is_sure = first.probability() >= options_.sure && gap_.verdict != Verdict::ambiguous;
+    // A report may call a gap unexplained over a small rest, and name a sure cause of a small part.
     const bool is_unexplained =
-        gap_.verdict == Verdict::unexplained && (!is_sure || gap_.times_noise() > options_.much_left);
+        is_sure ? gap_.times_noise() > options_.much_left : gap_.verdict == Verdict::unexplained;
     const auto is_tied = [](const Possible& one) { return one.is_tied; };
     if (gap_.verdict == Verdict::no_gap || (is_sure && first.effects().empty() && !is_unexplained)) {
       end(Ending::enough, "Enough: nothing is missing.");
     } else if (is_unexplained || (is_sure && first.is_curve())) {
-      end(Ending::none_of_these,
-          "None of these is still the likeliest: no named cause closes the gap" +
-              (first.is_curve() ? "; " + name_of(first.effects()) + " has " + two_digits(first.probability())
-                                : std::string()) +
-              ". " + advice);
+      end(Ending::none_of_these, "None of these is still the likeliest: no named cause closes the gap; " +
+                                     name_of(first.effects()) + " has " + two_digits(first.probability()) +
+                                     rest() + ". " + advice);
     } else if (is_sure && std::none_of(explanations_.begin(), explanations_.end(), is_tied)) {
       end(Ending::enough,
           "Enough: " + name_of(first.effects()) + " has " + two_digits(first.probability()) + rest() + ".");

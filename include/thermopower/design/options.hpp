@@ -22,8 +22,7 @@ struct DesignOptions {
   double least_weight =
       0.02;  ///< of an open one: an experiment is for a diagnosis that is wrong by more than it says
 
-  double much_left =
-      3.0;  ///< multiple of the noise that the likeliest explanation leaves: from here on the right one may be none of these
+  double much_left = 10.0;  ///< multiple of the noise; what leaves more is not the answer, however likely
 
   // How the search spends its time.
   double rows = 6e6;             ///< simulated rows that a design may spend: 5 s on one core

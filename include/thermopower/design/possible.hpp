@@ -75,6 +75,8 @@ public:
       return id.rfind("unknown.", 0) == 0;
     });
   }
+  /// Whether it names constants alone, or nothing.
+  bool is_constants() const { return explanation_.effects.empty(); }
   /// Whether only what was known before the data speaks against it: it predicts them as well as the likeliest one.
   bool is_tied = false;
 
@@ -156,7 +158,8 @@ private:
 };
 
 /// The explanations that an experiment has to tell apart: those that are likely, those that predict held-out data as well as the
-/// likeliest one, and where none is sure the likeliest curve, which stands for every cause that nobody has named. Likeliest first.
+/// likeliest one, and where none is sure the likeliest curve, which stands for every cause that nobody has named. A report may call a sure
+/// cause ambiguous because refitted constants do without it: then these are open, too. Likeliest first.
 /// @param catalogue  must outlive them; so must `gap`
 inline std::vector<Possible> still_open(const DiagnosedGap& gap, const Catalogue& catalogue,
                                         const DesignOptions& options = {}) {
@@ -177,6 +180,8 @@ inline std::vector<Possible> still_open(const DiagnosedGap& gap, const Catalogue
   };
   std::vector<Possible> all, as_good;
   bool needs_curve = !order.empty() && order.front()->probability < options.sure;
+  bool needs_constants =
+      gap.verdict == Verdict::ambiguous && !order.empty() && order.front()->probability >= options.sure;
   for (const RankedExplanation* one : order) {
     std::optional<Possible> possible = Possible::of(gap.model, catalogue, *one);
     if (!possible) continue;
@@ -191,8 +196,10 @@ inline std::vector<Possible> still_open(const DiagnosedGap& gap, const Catalogue
         (one->probability >= options.likely || possible->is_tied) && all.size() < options.most_open;
     const bool is_first_curve =
         needs_curve && possible->is_curve() && one->held_out_ratio < options.closes_half;
-    if (!is_open && !is_first_curve && !all.empty()) continue;
+    const bool is_first_of_constants = needs_constants && possible->is_constants();
+    if (!is_open && !is_first_curve && !is_first_of_constants && !all.empty()) continue;
     needs_curve = needs_curve && !possible->is_curve();
+    needs_constants = needs_constants && !possible->is_constants();
     all.push_back(std::move(*possible));
   }
   return all;
