@@ -432,11 +432,13 @@ int main(int count, char** values) {
     std::printf("%d draw %d %s truth %s, share %.2f, %s:", played + 1, static_cast<int>(number),
                 axis ? "axis" : "bench", hidden->label.c_str(), share, to_string(gap.verdict));
     ++played;
-    if (const Answer answer = answer_of(gap, alike, *hidden);
-        answer != Answer::open && first.ending != Ending::schedule) {
+    Answer at_once = answer_of(gap, alike, *hidden);
+    if (at_once != Answer::open && first.ending == Ending::none_of_these)
+      at_once = hidden->truth.empty() ? Answer::right : Answer::wrong;
+    if (at_once != Answer::open && first.ending != Ending::schedule) {
       ++one_class;
-      one_class_rightly += answer == Answer::right;
-      std::printf(" one class is left, %s: %s\n", answer == Answer::right ? "rightly" : "wrongly",
+      one_class_rightly += at_once == Answer::right;
+      std::printf(" one class is left, %s: %s\n", at_once == Answer::right ? "rightly" : "wrongly",
                   first.sentence.c_str());
       if (!also_alike) continue;
     }
@@ -526,9 +528,8 @@ int main(int count, char** values) {
       std::fflush(stdout);
     }
   }
-  std::printf(
-      "\n%d of %d recordings leave something open; in %d of them everything likely is one class, in %d rightly\n",
-      played, drawn, one_class, one_class_rightly);
+  std::printf("\n%d of %d recordings leave something open; %d of them need no experiment, %d rightly\n",
+              played, drawn, one_class, one_class_rightly);
   std::printf(
       "| experiment | right | wrong | open | of them no experiment decides (rightly) | median duration, share of the longest |\n"
       "|---|---|---|---|---|---|\n");
@@ -537,6 +538,7 @@ int main(int count, char** values) {
     std::printf("| %s | %d | %d | %d | %d (%d) | %.2f |\n", contender.c_str(), t.right, t.wrong, t.open,
                 t.cannot, t.cannot_rightly, median(t.duration_s));
   }
+  if (!svg.empty()) draw_truths(svg, contenders, tallies);
   if (spent.designs > 0)
     std::printf("%d designs, %.2f s each\n", spent.designs, spent.seconds / spent.designs);
   if (draws > 0)

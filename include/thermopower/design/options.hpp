@@ -32,8 +32,8 @@ struct DesignOptions {
   double whole_duration = 0.03;  ///< what the longest experiment costs, in units of being right
 
   // How near a limit it goes.
-  double use_in_search = 0.8;       ///< share of a limit, with few draws of the parameters
-  double use_at_most = 0.9;         ///< the same with `draws` of them
+  double use_in_search = 0.7;       ///< share of a limit, with few draws of the parameters
+  double use_at_most = 0.8;         ///< the same with `draws` of them
   std::size_t draws_in_search = 2;  ///< of each explanation's parameters, besides the fit
   std::size_t draws = 24;           ///< the same before an experiment is proposed
 };
