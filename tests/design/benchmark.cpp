@@ -348,9 +348,14 @@ std::optional<Recording> next_of(const std::string& contender, int number, const
 void draw_truths(const std::string& path, const std::vector<std::string>& contenders,
                  const std::map<std::string, Tally>& tallies) {
   const char* const colours[] = {"#0b7285", "#c92a2a", "#868e96", "#e67700", "#5f3dc4"};
-  figures::Panel panel;
+  figures::Panel panel, resolved;
+  resolved.title = "resolved rightly";
+  resolved.x_label = "experiments, in units of the longest one";
+  resolved.y_label = "share of the cases";
+  resolved.y_to = 1.0;
+  panel.title = "hidden cause of the catalogue";
   panel.x_label = "experiments, in units of the longest one";
-  panel.y_label = "probability of the hidden cause, mean";
+  panel.y_label = "mean probability";
   panel.y_to = 1.0;
   for (std::size_t k = 0; k < contenders.size(); ++k) {
     figures::Series series{contenders[k], colours[k % 5], figures::Mark::line, {}, {}};
@@ -363,9 +368,15 @@ void draw_truths(const std::string& path, const std::vector<std::string>& conten
       series.x.push_back(t);
       series.y.push_back(sum / static_cast<double>(truths.size()));
     }
-    panel.series.push_back(std::move(series));
+    panel.series.push_back(series);
+    const std::vector<double>& ends = tallies.at(contenders[k]).duration_s;
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      series.y[i] = static_cast<double>(std::count_if(ends.begin(), ends.end(),
+                                                      [&](double end) { return end <= series.x[i]; })) /
+                    static_cast<double>(ends.size());
+    resolved.series.push_back(std::move(series));
   }
-  figures::write_small_multiples(path, "How sure the hidden cause becomes", {panel}, 1);
+  figures::write_small_multiples(path, "How sure the hidden cause becomes", {panel, resolved}, 2);
 }
 
 std::vector<std::uint64_t> numbers_of(const char* list) {
