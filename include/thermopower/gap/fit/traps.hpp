@@ -89,7 +89,7 @@ inline void lead_outside(Fitter& fitter, Candidate& candidate, const FitOptions&
   constexpr double clearly_worse = 1.02;  // of the cost
   FitOptions better = options;
   better.hopeless = clearly_worse * candidate.fit.cost;
-  better.hopeful = 8;  // the way leads through worse places
+  better.hopeful = 14;  // the way leads through worse places
   for (const Eigen::VectorXd& from : places_outside(candidate)) {
     FitResult out = fitter.minimise(from, better, &candidate.fit.starts);
     if (out.cost >= better.hopeless) continue;
