@@ -258,3 +258,23 @@ TEST_CASE("a first reading is far off where those after it do not go back to it"
   for (const double tau_rows : {1.0, 2.0, 3.0, 5.0, 10.0})
     for (const double rise : {-20.0, 20.0}) CHECK_FALSE(far(tau_rows, rise, 0.0, 0.01));
 }
+
+TEST_CASE("the crest of a temperature that overshoots before it is held jumps nowhere") {
+  constexpr Eigen::Index count = 400;
+  test::Noise noise(3);
+  Recording r;
+  r.name = "chamber";
+  r.t_s = Eigen::VectorXd::LinSpaced(count, 0.0, static_cast<double>(count - 1));
+  Eigen::VectorXd held(count), power(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double t = static_cast<double>(i);
+    held[i] =
+        25.0 - std::exp(-t / 8.0) * (3.0 * std::cos(t / 2.5) - 2.0 * std::sin(t / 2.5)) + 0.004 * noise();
+    power[i] = i < 10 ? 200.0 : 60.0;
+  }
+  r.set("motor_C", held);
+  r.set("power_param", power);
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(prepared.recording().rows() == count);
+  CHECK(prepared.recording().column("motor_C").allFinite());
+}

@@ -67,7 +67,8 @@ public:
     return mask;
   }
 
-  /// Stretches that jump away from the level before them and back to it.
+  /// Stretches that jump away from the level before them and back to it. What climbs a slope and comes down one, as a temperature
+  /// that overshoots, does neither.
   RowMask bursts() {
     RowMask mask = empty();
     const double least =
@@ -78,7 +79,7 @@ public:
       const std::vector<Eigen::Index> rows = finite_rows(run);
       for (std::size_t i = 1; i < rows.size(); ++i) {
         const double level = values_[rows[i - 1]], jump = values_[rows[i]] - level;
-        if (!(std::abs(jump) > least) || !(least > 0.0)) continue;
+        if (!(std::abs(jump) > least) || !(least > 0.0) || is_on_a_slope(rows, i)) continue;
         std::size_t end = i;
         bool stuck = true, away = true;
         const auto off = [&](std::size_t k) { return (values_[rows[k]] - level) / jump; };
@@ -91,7 +92,7 @@ public:
         }
         const auto length = static_cast<Eigen::Index>(end - i);
         if (end == rows.size() || length > (stuck ? limit_.longest_stuck : limit_.longest_burst)) continue;
-        if (!(off(end) < limit_.came_back)) continue;
+        if (!(off(end) < limit_.came_back) || is_on_a_slope(rows, end)) continue;
         if (!traits_.cannot_jump && !away && !(stuck && length > 1 && equal_share_ < limit_.hardly_equal))
           continue;
         if (!traits_.cannot_jump && traits_.zero_is_rest && values_[rows[i]] == 0.0) continue;
@@ -154,6 +155,15 @@ public:
 
 private:
   RowMask empty() const { return RowMask(static_cast<std::size_t>(values_.size()), 0); }
+
+  /// Whether the step to a row is much like the one before it.
+  bool is_on_a_slope(const std::vector<Eigen::Index>& rows, std::size_t i) const {
+    constexpr double alike = 0.5;
+    if (i < 2) return false;
+    const double step = values_[rows[i]] - values_[rows[i - 1]],
+                 before = values_[rows[i - 1]] - values_[rows[i - 2]];
+    return before * step > 0.0 && std::abs(before) > alike * std::abs(step);
+  }
 
   /// Adds the other samples of an extreme that most of all its samples in a mask have.
   void add_ends(RowMask& mask) const {
