@@ -74,6 +74,23 @@ TEST_CASE("a unit or a sign holds in every recording of a source") {
   CHECK(likeliest({backwards, forwards}).empty());
 }
 
+TEST_CASE(
+    "a bed that is hot where its log begins, and warms half as fast again as one mass, is in degrees Celsius") {
+  UnitEvidence bed;
+  bed.columns = {"t_s", "power_param", "ambient_C", "motor_C"};
+  bed.is_bench = true;
+  bed.heated_by = "power_param";
+  bed.interval_s = 1.0;
+  bed.most_power = 255.0;
+  bed.air.low = bed.air.typical = bed.air.high = 25.0;
+  bed.motor.low = 66.0;
+  bed.motor.typical = bed.motor.high = 105.0;
+  bed[UnitMeasure::heating].tell(1.5, 0.1);
+  bed[UnitMeasure::cooling].tell(2.9, 0.1);  // of the mass beside it, to which it loses heat at first
+  bed.air_offset_K = 38.0;
+  CHECK(likeliest({bed}).empty());
+}
+
 TEST_CASE("one factor of several constants is said, and stops nothing") {
   Recording slow = test::recorded(test::RubbingAxis{1, 1.0, 0.0});
   slow.t_s *= 0.5;

@@ -204,8 +204,9 @@ private:
     constexpr UnitThresholds limit;
     constexpr double constant_sd = 0.05, loose_sd = 0.3, air_sd_K = 5.0, start_sd_K = 20.0, offset_sd_K = 1.5;
     const auto kind = static_cast<UnitMeasure>(k);
-    const bool is_loose =
-        kind == UnitMeasure::drag || kind == UnitMeasure::supply || kind == UnitMeasure::target;
+    // A second mass or a lag makes the rate of warming another one, as often as not.
+    const bool is_loose = kind == UnitMeasure::drag || kind == UnitMeasure::supply ||
+                          kind == UnitMeasure::target || kind == UnitMeasure::heating;
     const double sd = k == air      ? air_sd_K
                       : k == start  ? start_sd_K
                       : k == offset ? offset_sd_K
