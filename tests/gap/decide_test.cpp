@@ -170,6 +170,20 @@ TEST_CASE("what is better in every block is better beyond doubt, though a rival 
   CHECK(candidates[1].probability > 0.99);
 }
 
+TEST_CASE("a cause that makes held-out data worse than constants do is not named, however well it fits") {
+  const Model model = axis_model();
+  std::vector<Candidate> candidates = nothing_friction_and(model, "cable_spring");
+  candidates[2].train = sums_of(blocks(1.0, 1.0));
+  candidates[2].held_out = sums_of(blocks(60.0, 60.0));
+  weigh(candidates, Weight(), model);
+  CHECK(candidates[2].refused);
+  CHECK(candidates[2].probability == 0.0);
+  candidates[2].held_out = sums_of(blocks(20.0, 20.0));
+  weigh(candidates, Weight(), model);
+  CHECK_FALSE(candidates[2].refused);
+  CHECK(candidates[2].probability > 0.99);
+}
+
 TEST_CASE("friction that is alike in both directions is friction, and no rival of it") {
   const Model model = axis_model();
   std::vector<Candidate> candidates = nothing_friction_and(model, "asymmetric_friction");
