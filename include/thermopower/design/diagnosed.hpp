@@ -18,6 +18,8 @@ namespace thermopower::design {
 using namespace gap;  // NOLINT: what a user of a design names comes from the diagnosis, too
 
 /// A signal that will be recorded, and how far a prediction is off.
+///
+/// How to: @ref design_the_next_experiment.
 struct Watched {
   Signal signal = Signal::motor_C;  ///< that is watched
   double noise = 1.0;               ///< standard deviation in the signal's unit, > 0
@@ -30,6 +32,8 @@ struct Watched {
 };
 
 /// What a diagnosis leaves open, as a design needs it.
+///
+/// How to: @ref design_the_next_experiment.
 struct DiagnosedGap {
   Model model;                              ///< that was diagnosed
   Verdict verdict = Verdict::insufficient;  ///< of that diagnosis
