@@ -5,7 +5,9 @@
 #include "plants.hpp"
 
 #include <thermopower/gap/compare/choice.hpp>
+#include <thermopower/gap/data/prepared_recording.hpp>
 #include <thermopower/gap/decide/covariance.hpp>
+#include <thermopower/gap/fit/judgeable.hpp>
 #include <thermopower/gap/report/estimates.hpp>
 #include <thermopower/gap/report/parts.hpp>
 
@@ -641,4 +643,25 @@ TEST_CASE("a beginning that bends, as that of a thermometer that lags, is no fir
   CHECK(begin_off(false, 0.0) < draws / 2);
   CHECK(begin_off(true, 0.0) < draws / 2);
   CHECK(begin_off(false, 6.0 * noise_C) > 9 * draws / 10);
+}
+
+TEST_CASE("a spring is looked for where rows show the inertia that it hangs on, and nowhere else") {
+  Model model = axis_model();
+  const std::vector<Inputs> inputs{
+      PreparedRecording(model, test::axis_recording({}, 500, 1)).inputs()};  // a row every 10 ms
+  const auto is_judged = [&](const char* id) {
+    return can_be_judged(*standard_catalogue().find(id), model, inputs);
+  };
+  CHECK(is_judged("compliance"));
+  CHECK(is_judged("backlash"));
+  model.axis->viscous_Nms_per_rad = model.axis->inertia_kgm2 / 1e-3;  // it settles in a millisecond
+  CHECK_FALSE(is_judged("compliance"));
+  CHECK_FALSE(is_judged("backlash"));
+  CHECK(is_judged("coulomb_friction"));
+  // What the motor's own voltage brakes settles it, too.
+  model.axis->viscous_Nms_per_rad = 0.0;
+  CHECK(is_judged("compliance"));
+  model.axis->resistance_ohm =
+      1e-3 * std::pow(model.axis->torque_constant_Nm_per_A, 2.0) / model.axis->inertia_kgm2;
+  CHECK_FALSE(is_judged("compliance"));
 }

@@ -31,7 +31,8 @@ enum class Need {
   supply_not_logged,  ///< there is no column `supply_V`
   thesis_thermal,  ///< the body warms by the thesis's law, whose heat capacity depends on voltage and temperature
   open_loop,       ///< the command is recorded
-  closed_loop      ///< the model has a servo, its target is recorded and the command is not
+  closed_loop,  ///< the model has a servo, its target is recorded and the command is not
+  shown_inertia  ///< drag does not settle the axis within a row: else no row tells what is driven from what hangs on it
 };
 
 /// As lists of effects print it.
@@ -69,6 +70,8 @@ inline const char* to_string(Need need) {
       return "command recorded";
     case Need::closed_loop:
       return "servo and target, no command";
+    case Need::shown_inertia:
+      return "rows shorter than the axis settles in";
   }
   return "?";
 }

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/catalogue.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <algorithm>
 #include <variant>
@@ -22,6 +23,18 @@ inline bool can_be_judged(const CalibratedConstant& constant, const Model& model
            : constant.block == "thermal" ? one.judged(Signal::motor_C)
                                          : one.bench();
   });
+}
+
+/// Whether rows are so close that the inertia of an axis shows: drag, with what the motor's own voltage brakes, does not settle its
+/// rate within one. A spring behind it would not show, either, and to simulate one takes thousands of steps a row.
+inline bool shows_inertia(const Model& model, const Inputs& inputs) {
+  constexpr double settled = 3.0;  // time constants: 5 % of a step are left
+  if (!inputs.axis() || !model.axis) return inputs.axis();
+  const RigidAxisModel& axis = *model.axis;
+  double drag_Nms_per_rad = axis.viscous_Nms_per_rad;
+  if (axis.voltage_driven())
+    drag_Nms_per_rad += axis.torque_constant_Nm_per_A * axis.torque_constant_Nm_per_A / axis.resistance_ohm;
+  return drag_Nms_per_rad * plant::median_interval_s(inputs.t_s, inputs.runs) < settled * axis.inertia_kgm2;
 }
 
 /// Whether model and recordings have what an effect needs.
@@ -84,6 +97,9 @@ inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
           break;
         case Need::closed_loop:
           here = inputs.axis() && inputs.closed_loop;
+          break;
+        case Need::shown_inertia:
+          here = shows_inertia(model, inputs);
           break;
         case Need::ohmic_without_tempco:
           here = ohmic != nullptr && ohmic->tempco_per_K == 0.0;

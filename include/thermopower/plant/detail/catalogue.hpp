@@ -69,7 +69,7 @@ THERMOPOWER_GAP_INLINE void Catalogue::check(const EffectInfo& info, const HookS
                             need == Need::thesis_thermal || need == Need::airspeed_mps ||
                             need == Need::neighbour_C;
     const bool axis_only = need == Need::axis_model || need == Need::angle_deg || need == Need::open_loop ||
-                           need == Need::closed_loop;
+                           need == Need::closed_loop || need == Need::shown_inertia;
     if ((bench_only && !hooks.any_bench()) || (axis_only && !hooks.any_axis()))
       throw InvalidInput(effect + ": needs '" + to_string(need) +
                          "', which none of its hooks has to do with");

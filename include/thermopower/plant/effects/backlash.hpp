@@ -39,7 +39,7 @@ struct Backlash {
          parameter(far_share, "far_share").unit("1").within(0.02, 0.97).starts({0.35, 0.65}),
          parameter(contact_Hz, "contact_Hz").unit("Hz").within(5.0, 50.0).logarithmic().starts({20.0}),
          parameter(damping, "damping").unit("1").within(1e-3, 2.0).logarithmic().starts({0.15})},
-        {Need::axis_model},
+        {Need::axis_model, Need::shown_inertia},
         "slow reversals at small torque, and fast ones"};
     info.costly = info.strikes = true;
     return info;

@@ -41,7 +41,7 @@ struct Compliance {
              .logarithmic()
              .starts({0.03})
              .degenerate_at_upper()},
-        {Need::axis_model},
+        {Need::axis_model, Need::shown_inertia},
         "fast reversals and a frequency sweep"};
     one.in_a_joint = in_a_joint;
     return one;
