@@ -69,6 +69,11 @@ struct RigidAxisModel {
 
   /// Whether a voltage drives the motor, and not a current.
   bool voltage_driven() const { return resistance_ohm != 0.0; }
+  /// What brakes the axis for each rad/s, N m s/rad: viscous friction, and the motor's own voltage where one drives it.
+  double drag_Nms_per_rad() const {
+    return viscous_Nms_per_rad +
+           (voltage_driven() ? torque_constant_Nm_per_A * torque_constant_Nm_per_A / resistance_ohm : 0.0);
+  }
 };
 
 /// `"law": "position_pid"`: from `target_deg` to a command, sampled every `period_s` and held until the next one:

@@ -53,6 +53,8 @@ TEST_CASE("sound recordings are believed, and those of other plants than the mod
   CHECK(decision(test::bench_model(), test::bench_recording({0.01, 0.05, 1.3, 1.5, 20.0, 1.4}, 1200, 3))
             .empty());
   CHECK(decision(test::axis_model(), test::axis_recording({0.03, 0.02, 1.0, 3}, 3000, 4)).empty());
+  CHECK(decision(test::axis_model(), test::axis_recording({0.0, 0.0, 18.0, 0}, 3000, 4))
+            .empty());  // a stiff spring: only the rate trembles
   CHECK(decision(test::axis_model(), test::axis_recording({0.0, 0.0, 0.0, 18.0}, 3000, 4))
             .empty());  // angle_scale
 }

@@ -29,12 +29,9 @@ inline bool can_be_judged(const CalibratedConstant& constant, const Model& model
 /// rate within one. A spring behind it would not show, either, and to simulate one takes thousands of steps a row.
 inline bool shows_inertia(const Model& model, const Inputs& inputs) {
   constexpr double settled = 3.0;  // time constants: 5 % of a step are left
-  if (!inputs.axis() || !model.axis) return inputs.axis();
-  const RigidAxisModel& axis = *model.axis;
-  double drag_Nms_per_rad = axis.viscous_Nms_per_rad;
-  if (axis.voltage_driven())
-    drag_Nms_per_rad += axis.torque_constant_Nm_per_A * axis.torque_constant_Nm_per_A / axis.resistance_ohm;
-  return drag_Nms_per_rad * plant::median_interval_s(inputs.t_s, inputs.runs) < settled * axis.inertia_kgm2;
+  if (!inputs.axis() || !model.axis) return false;
+  return model.axis->drag_Nms_per_rad() * plant::median_interval_s(inputs.t_s, inputs.runs) <
+         settled * model.axis->inertia_kgm2;
 }
 
 /// Whether model and recordings have what an effect needs.

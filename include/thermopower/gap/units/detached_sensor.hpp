@@ -6,6 +6,7 @@
 #include <thermopower/gap/data/prepared_recording.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -110,26 +111,12 @@ struct StillAxisThresholds {
   Eigen::Index least_rows = 50;  ///< of a recording: fewer say nothing
 };
 
-/// The widest the readings of a sensor lie apart, and what noise alone makes of it; both 0 without readings.
-struct ReadingRange {
-  double range = 0.0;  ///< between the lowest and the highest reading
-  double noise = 0.0;  ///< standard deviation of one reading, from the steps between them
-};
-
-/// @param values  with NaN where nothing was read
-inline ReadingRange range_of(const Eigen::VectorXd& values) {
-  std::vector<double> steps;
-  double low = 1e300, high = -1e300, last = std::nan("");
-  for (const double one : values) {
-    if (!std::isfinite(one)) continue;
-    low = std::min(low, one), high = std::max(high, one);
-    if (std::isfinite(last)) steps.push_back(one - last);
-    last = one;
-  }
-  if (steps.empty()) return {};
-  double square = 0.0;
-  for (const double one : steps) square += one * one;
-  return {high - low, std::sqrt(0.5 * square / static_cast<double>(steps.size()))};
+/// The widest the readings of a sensor lie apart; 0 without any.
+inline double range_of(const Eigen::VectorXd& values) {
+  const std::vector<double> read = finite_samples(values);
+  if (read.empty()) return 0.0;
+  const auto [low, high] = std::minmax_element(read.begin(), read.end());
+  return *high - *low;
 }
 
 /// How far a rigid axis would turn by a recorded drive, deg: what the model says, with its own friction and nothing else.
@@ -138,7 +125,7 @@ inline double travel_deg(const Model& model, const Inputs& inputs) {
   const Eigen::VectorXd& drive = plant::command(inputs, axis.voltage_driven());
   const double torque = axis.torque_constant_Nm_per_A;
   const double per_drive = axis.voltage_driven() ? torque / axis.resistance_ohm : torque;
-  const double damping = axis.viscous_Nms_per_rad + (axis.voltage_driven() ? torque * per_drive : 0.0);
+  const double damping = axis.drag_Nms_per_rad();
   double widest = 0.0;
   for (const RunSpan& run : inputs.runs) {
     double angle = 0.0, rate = 0.0, low = 0.0, high = 0.0;
@@ -164,15 +151,15 @@ inline bool shows_no_motion(const Model& model, const Inputs& inputs) {
     return false;
   const bool angle = inputs.judged(Signal::angle_deg), rate = inputs.judged(Signal::rate_dps);
   if (!angle && !rate) return false;
-  const ReadingRange turned = angle ? range_of(inputs.of(Signal::angle_deg)) : ReadingRange();
-  if (angle && turned.range > limit.noise * turned.noise) return false;
+  const auto noise = [&](Signal of) { return plant::sample_noise(inputs.of(of), inputs.runs); };
+  const double turned_deg = angle ? range_of(inputs.of(Signal::angle_deg)) : 0.0;
+  if (angle && turned_deg > limit.noise * noise(Signal::angle_deg)) return false;
   if (rate) {  // an axis that turns at one rate moves
-    const Eigen::VectorXd& rates = inputs.of(Signal::rate_dps);
-    const double noise = range_of(rates).noise;
-    for (const double one : rates)
-      if (std::abs(one) > limit.noise * noise) return false;
+    const double moves_dps = limit.noise * noise(Signal::rate_dps);
+    for (const double one : inputs.of(Signal::rate_dps))
+      if (std::abs(one) > moves_dps) return false;
   }
-  return travel_deg(model, inputs) > std::max(1.0, limit.moves * turned.range);
+  return travel_deg(model, inputs) > std::max(1.0, limit.moves * turned_deg);
 }
 
 /// Adds a finding to every recording in which an axis never moved: nothing can be learned from it, whether a sensor is loose or the
