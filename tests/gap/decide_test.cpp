@@ -178,11 +178,11 @@ TEST_CASE("a cause that makes held-out data worse than constants do is not named
   candidates[2].train = sums_of(blocks(1.0, 1.0));
   candidates[2].held_out = sums_of(blocks(60.0, 60.0));
   weigh(candidates, Weight(), model);
-  CHECK(candidates[2].refused);
+  CHECK(candidates[2].makes_worse);
   CHECK(candidates[2].probability == 0.0);
   candidates[2].held_out = sums_of(blocks(20.0, 20.0));
   weigh(candidates, Weight(), model);
-  CHECK_FALSE(candidates[2].refused);
+  CHECK_FALSE(candidates[2].makes_worse);
   CHECK(candidates[2].probability > 0.99);
 }
 

@@ -248,7 +248,7 @@ inline bool is_at_the_noise(const Candidate& candidate) {
 /// Whether a candidate may be named: it was judged on held-out data and does not make them worse, does not stand in for another
 /// one, and all of it is there.
 inline bool in_the_running(const Candidate& candidate) {
-  return !candidate.on_bounds && !candidate.idle && !candidate.doubtful && !candidate.refused &&
+  return !candidate.on_bounds && !candidate.idle && !candidate.doubtful && !candidate.makes_worse &&
          candidate.held_out.any();
 }
 
@@ -442,8 +442,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     Shown shown = weight.shown;
     shown.by_reaching_the_noise = is_at_the_noise(one);
     one.on_bounds = ends_on_bounds(one, model, shown);
-    one.refused = !one.explanation.effects.empty() && one.held_out.any() &&
-                  one.held_out_deviance > candidates.front().held_out_deviance;
+    one.makes_worse = !one.explanation.effects.empty() && one.held_out.any() &&
+                      one.held_out_deviance > candidates.front().held_out_deviance;
   }
   mark_twins(candidates, model);
   for (const Candidate& one : candidates)

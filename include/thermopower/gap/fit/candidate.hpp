@@ -31,7 +31,7 @@ struct Candidate {
   bool settled = false;      ///< a fit goes nowhere from where it ended, as long as data and noise stay
   bool idle = false;      ///< another one says the same with less: moved constants alone, or a simpler cause
   bool doubtful = false;  ///< a cause of a set may as well not be there: the others do what it does
-  bool refused = false;   ///< its causes make held-out data worse than refitted constants do
+  bool makes_worse = false;  ///< its causes make held-out data worse than refitted constants do
 
   /// Where the fit ended with the coordinate at this place of `list`: its value, in its unit.
   double value(std::size_t place) const {
