@@ -35,6 +35,7 @@ struct MaskThresholds {
   double jump_scales = 12.0;         ///< noise scales of a step that may begin a stretch elsewhere
   double jump_steps = 6.0;           ///< of the 75th percentile of the steps
   double quanta = 4.0;               ///< quanta that any of them must be, too
+  double on_a_slope = 0.5;           ///< of a step, that the one before it has, too: then neither is a jump
   double came_back = 0.25;           ///< of the jump: what lies nearer to where it came from has come back
   double stayed_away = 0.5;          ///< of the jump: what lies farther is still away
   Eigen::Index longest_burst = 20;   ///< rows of a stretch elsewhere

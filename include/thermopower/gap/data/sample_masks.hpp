@@ -158,11 +158,10 @@ private:
 
   /// Whether the step to a row is much like the one before it.
   bool is_on_a_slope(const std::vector<Eigen::Index>& rows, std::size_t i) const {
-    constexpr double alike = 0.5;
     if (i < 2) return false;
     const double step = values_[rows[i]] - values_[rows[i - 1]],
                  before = values_[rows[i - 1]] - values_[rows[i - 2]];
-    return before * step > 0.0 && std::abs(before) > alike * std::abs(step);
+    return before * step > 0.0 && std::abs(before) > limit_.on_a_slope * std::abs(step);
   }
 
   /// Adds the other samples of an extreme that most of all its samples in a mask have.
