@@ -20,26 +20,31 @@ constexpr double inertia_kgm2 = 2e-5, viscous_Nms_per_rad = 1e-5, Nm_per_A = 0.0
 
 double drive_A(Eigen::Index row) { return 0.25 + 0.1 * std::sin(0.05 * static_cast<double>(row)); }
 
-/// The equation of motion by the classical Runge-Kutta rule, a hundred steps a row.
+/// Moves angle and rate by one row: the classical Runge-Kutta rule, in so many steps.
+/// @param acceleration  of angle and rate
+template <class Acceleration>
+void move(double& angle, double& rate, double length_s, int steps, const Acceleration& acceleration) {
+  const double h = length_s / steps;
+  for (int i = 0; i < steps; ++i) {
+    const double a1 = acceleration(angle, rate), w2 = rate + 0.5 * h * a1;
+    const double a2 = acceleration(angle + 0.5 * h * rate, w2), w3 = rate + 0.5 * h * a2;
+    const double a3 = acceleration(angle + 0.5 * h * w2, w3), w4 = rate + h * a3;
+    const double a4 = acceleration(angle + h * w3, w4);
+    angle += h / 6.0 * (rate + 2.0 * w2 + 2.0 * w3 + w4);
+    rate += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+  }
+}
+
+/// The rates that the equation of motion makes.
 std::vector<double> rates_dps(double start_rad_per_s, Eigen::Index rows) {
-  constexpr int steps = 100;
-  const double h = row_s / steps;
   double angle = 0.0, rate = start_rad_per_s;
   std::vector<double> result;
-  const auto acceleration = [](double at, double w, double torque) {
-    return (torque - viscous_Nms_per_rad * w - unbalanced_Nm * std::sin(at + phase_rad)) / inertia_kgm2;
-  };
   for (Eigen::Index row = 0; row < rows; ++row) {
     result.push_back(rate / rad_per_deg);
     const double torque = Nm_per_A * drive_A(row);
-    for (int i = 0; i < steps; ++i) {
-      const double a1 = acceleration(angle, rate, torque), w2 = rate + 0.5 * h * a1;
-      const double a2 = acceleration(angle + 0.5 * h * rate, w2, torque), w3 = rate + 0.5 * h * a2;
-      const double a3 = acceleration(angle + 0.5 * h * w2, w3, torque), w4 = rate + h * a3;
-      const double a4 = acceleration(angle + h * w3, w4, torque);
-      angle += h / 6.0 * (rate + 2.0 * w2 + 2.0 * w3 + w4);
-      rate += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-    }
+    move(angle, rate, row_s, 100, [&](double at, double w) {
+      return (torque - viscous_Nms_per_rad * w - unbalanced_Nm * std::sin(at + phase_rad)) / inertia_kgm2;
+    });
   }
   return result;
 }
@@ -83,7 +88,6 @@ TEST_CASE(
   constexpr double heavy_kgm2 = 0.01, drag = 0.5, friction_Nm = 0.5, transition_rad_per_s = 0.05,
                    interval_s = 0.02;
   constexpr Eigen::Index rows = 1000;
-  constexpr int steps = 1000;
   Model model;
   model.name = "creeping";
   model.axis = RigidAxisModel{heavy_kgm2, drag, 1.0};
@@ -93,24 +97,15 @@ TEST_CASE(
   recording.name = "creeping";
   recording.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, interval_s * static_cast<double>(rows - 1));
   Eigen::VectorXd drive(rows), angle(rows), rate(rows);
-  // The equation of motion by the classical Runge-Kutta rule, a thousand steps a row.
-  const double h = interval_s / steps;
   double at = 0.0, speed = 0.0;
   for (Eigen::Index row = 0; row < rows; ++row) {
     const double t = recording.t_s[row];
     drive[row] = 0.6 * std::sin(3.1 * t) + 0.3 * std::sin(11.0 * t + 1.0);
     angle[row] = at / rad_per_deg;
     rate[row] = speed / rad_per_deg;
-    const auto acceleration = [&](double w) {
+    move(at, speed, interval_s, 1000, [&](double, double w) {
       return (drive[row] - drag * w - friction_Nm * std::tanh(w / transition_rad_per_s)) / heavy_kgm2;
-    };
-    for (int i = 0; i < steps; ++i) {
-      const double a1 = acceleration(speed), w2 = speed + 0.5 * h * a1, a2 = acceleration(w2);
-      const double w3 = speed + 0.5 * h * a2, a3 = acceleration(w3), w4 = speed + h * a3,
-                   a4 = acceleration(w4);
-      at += h / 6.0 * (speed + 2.0 * w2 + 2.0 * w3 + w4);
-      speed += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-    }
+    });
   }
   recording.set("drive_A", drive);
   recording.set("angle_deg", angle);
