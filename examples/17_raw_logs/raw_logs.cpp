@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 //
-// Writes raw logs of seven kinds, as machines write them, and the model that each is compared with. The machines are simulated here: a
+// Writes raw logs of eight kinds, as machines write them, and the model that each is compared with. The machines are simulated here: a
 // printer's hotend behind a thermometer that comes late, one whose connector takes a part of its power, a bed whose heater loses
-// power as it warms, and a joint with dry friction. Their models know nothing of that. The scripts beside this file go from a log to a report.
+// power as it warms, one whose log has no power, and a joint with dry friction. Their models know nothing of that. The scripts beside this file go from a log to a report.
 //
 //   raw_logs FOLDER
 
@@ -34,14 +34,14 @@ struct Heater {
 
 /// A heater under its loop. @param pid  gains of Klipper's loop (of 255, as its configuration has them); else on and off by half a kelvin
 std::vector<HeaterRow> heated(const Heater& heater, const std::vector<double>& targets_C, bool pid,
-                              unsigned seed) {
+                              unsigned seed, int hold_s = 150) {
   const double kp = 20.0 / 255.0, ki = 0.4 / 255.0, kd = 60.0 / 255.0, air_C = 24.0, step_s = 0.1;
   std::mt19937 random(seed);
   std::normal_distribution<double> noise_K(0.0, 0.05);
   std::vector<HeaterRow> rows;
   double body_C = air_C, shown_C = air_C, before_C = air_C, sum = 0.0, duty = 0.0;
   for (const double target_C : targets_C)
-    for (int second = 0; second < 150; ++second) {
+    for (int second = 0; second < hold_s; ++second) {
       const double read_C = shown_C + noise_K(random), error_K = target_C - read_C;
       if (pid) {
         sum = std::fmin(std::fmax(sum + error_K, 0.0), 1.0 / ki);
@@ -117,6 +117,15 @@ std::string marlin(const std::vector<HeaterRow>& rows) {
   for (const HeaterRow& row : rows)
     text += " T:24.00 /0.00 B:" + number("%.2f", row.shown_C) + " /" + number("%.2f", row.target_C) +
             " @:0 B@:" + number("%.0f", 127.0 * row.duty) + "\n";
+  return text;
+}
+
+/// A temperature graph as the web page of a printer exports it: no power.
+std::string graph(const std::vector<HeaterRow>& rows) {
+  std::string text = "time,bed_temp,bed_target\n";
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    text += number("%.1f", static_cast<double>(i)) + "," + number("%.2f", rows[i].shown_C) + "," +
+            number("%.0f", rows[i].target_C) + "\n";
   return text;
 }
 
@@ -205,6 +214,13 @@ int main(int count, char** values) {
       "{\"format\": \"thermopower-model/1\", \"name\": \"bed\", \"supply\": {\"nominal_V\": 24},\n"
       " \"current\": {\"law\": \"ohmic\", \"resistance_ohm\": 2.88, \"tempco_per_K\": 0},\n"
       " \"thermal\": {\"law\": \"lumped\", \"heat_capacity_J_per_K\": 91, \"conductance_W_per_K\": 0.89}}\n");
+  write("graph.csv", graph(heated({200.0, 0.0, 600.0, 1.2, 12.0}, bed, false, 5, 600)));
+  write(
+      "bed_loop.json",
+      "{\"format\": \"thermopower-model/1\", \"name\": \"bed\", \"supply\": {\"nominal_V\": 24},\n"
+      " \"current\": {\"law\": \"ohmic\", \"resistance_ohm\": 2.88, \"tempco_per_K\": 0},\n"
+      " \"thermal\": {\"law\": \"lumped\", \"heat_capacity_J_per_K\": 606, \"conductance_W_per_K\": 1.19},\n"
+      " \"heater\": {\"law\": \"bang_bang\", \"max_delta_K\": 0.5, \"period_s\": 1}}\n");
   const std::vector<JointRow> joint = moved(0.12, 3);
   write("candump.log", candump(joint));
   write("robot.jsonl", json_lines(joint));
@@ -215,7 +231,7 @@ int main(int count, char** values) {
       "{\"format\": \"thermopower-model/1\", \"name\": \"joint\", \"axis\": {\"law\": \"rigid\", \"inertia_kgm2\": 0.0041,\n"
       " \"viscous_Nms_per_rad\": 0.02, \"torque_constant_Nm_per_A\": 0.5}}\n");
   std::printf(
-      "%s: klippy.log, failed.log, serial.log, candump.log, robot.jsonl, moteus.csv, pandas.csv, and their models\n",
+      "%s: klippy.log, failed.log, serial.log, graph.csv, candump.log, robot.jsonl, moteus.csv, pandas.csv, and their models\n",
       folder.c_str());
   return 0;
 }

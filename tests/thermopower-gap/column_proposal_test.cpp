@@ -161,6 +161,11 @@ TEST_CASE("a heater's log in Marlin's letters; a T that falls is no time") {
         "motor_C=B; power_param=B@:127");
   CHECK(proposals("T,T_target,B,B_target,@,B@\n25,0,25,60,127,127\n50,0,40,60,127,127\n60,0,60,60,9,40\n") ==
         "motor_C=T; power_param=@:127");
+  // Where nobody logged the power, the target tells it.
+  CHECK(proposals("time,bed_temp,bed_target\n0,25,60\n1,26,60\n2,27,60\n") ==
+        "t_s=time; motor_C=bed_temp; target_C=bed_target");
+  CHECK(proposals("time,extruder.temp,extruder.target\n0,25,60\n1,26,60\n2,27,60\n") ==
+        "t_s=time; motor_C=extruder.temp; target_C=extruder.target");
 }
 
 TEST_CASE("dates, units below the header and pandas' index are read as they stand") {

@@ -115,6 +115,8 @@ TEST_CASE("klippy.log: the heaters' temperature, target and power, and the gains
   const io::LogContents contents = io::list_log(log.path);
   const std::string shown = io::columns_text(contents);
   CHECK_THAT(shown, ContainsSubstring("[extruder] control=pid max_power=0.8 pid_kp=21.5"));
+  CHECK_THAT(shown, ContainsSubstring(
+                        "\"heater\": {\"law\": \"klipper_pid\", \"kp_per_K\": 21.5, \"max_power\": 0.8}"));
   CHECK_THAT(shown, ContainsSubstring("--column power_param=extruder.pwm:1") &&
                         ContainsSubstring("--column motor_C=extruder.temp") &&
                         ContainsSubstring("--ambient DEGC"));

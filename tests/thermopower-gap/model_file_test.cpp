@@ -55,6 +55,34 @@ TEST_CASE("the thesis's laws are read for current and temperature") {
   CHECK(model.get("rinv_offset_V0") == -0.105);
 }
 
+TEST_CASE("the loop of a heater is read, and written as it was") {
+  const std::string body = "\"supply\": {\"nominal_V\": 24}, " + ohmic + ", " + lumped;
+  const auto with = [&](const std::string& heater) { return model_text(body + ", \"heater\": " + heater); };
+  const Model klipper =
+      parse(with(R"({"law": "klipper_pid", "kp_per_K": 20, "ki_per_K_s": 0.4, "max_power": 0.8})"));
+  CHECK(klipper.get("heater.kp_per_K") == 20.0);
+  CHECK(klipper.get("heater.kd_s_per_K") == 0.0);
+  CHECK(klipper.get("heater.period_s") == 0.3);
+  CHECK(klipper.simulates_heater_loop());
+  const Model marlin = parse(with(R"({"law": "marlin_pid", "kp_per_K": 20, "acts_on": "recorded"})"));
+  CHECK(marlin.get("heater.functional_range_K") == 10.0);
+  CHECK_FALSE(marlin.simulates_heater_loop());
+  const Model bang = parse(with(R"({"law": "bang_bang", "max_delta_K": 0.5, "period_s": 5})"));
+  CHECK(bang.get("heater.max_delta_K") == 0.5);
+  CHECK_FALSE(bang.simulates_heater_loop());
+  for (const Model& one : {klipper, marlin, bang})
+    CHECK(io::to_json(parse(io::to_json(one))) == io::to_json(one));
+  CHECK_THAT(error_of(with(R"({"law": "pid"})")),
+             ContainsSubstring(
+                 "/heater/law: is \"pid\"; expected \"klipper_pid\" or \"marlin_pid\" or \"bang_bang\""));
+  CHECK_THAT(error_of(with(R"({"law": "bang_bang", "kp_per_K": 1})")),
+             ContainsSubstring("/heater/kp_per_K: unknown key"));
+  CHECK_THAT(error_of(with(R"({"law": "bang_bang", "max_power": 2})")),
+             ContainsSubstring("heater.max_power is above 1"));
+  CHECK_THAT(error_of(with(R"({"law": "bang_bang", "acts_on": "both"})")),
+             ContainsSubstring("/heater/acts_on: is \"both\"; expected \"recorded\" or \"simulated\""));
+}
+
 TEST_CASE("an axis at a voltage and the servos are read, and written as they were") {
   const std::string axis =
       R"("axis": {"law": "voltage", "inertia_kgm2": 1e-3, "viscous_Nms_per_rad": 0, "torque_constant_Nm_per_A": 0.2,

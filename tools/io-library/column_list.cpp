@@ -224,6 +224,7 @@ std::string next_text(const std::string& file, const std::vector<ListedColumn>& 
     missing +=
         "No column looks like what drives the joint: expected a current, a voltage, a duty or a target "
         "(--column drive_A=HEADER, voltage_V=HEADER or target_deg=HEADER).\n";
+  if (proposes(columns, "target_C")) missing += "The model needs the heater's loop: a block \"heater\".\n";
   if (!moves && !warms)
     missing +=
         "No column looks like a motion or a motor's temperature: --column motor_C=HEADER or angle_deg=HEADER says which one is.\n";

@@ -318,7 +318,7 @@ private:
       case Dimension::speed:
         return has(words, {"airspeed", "windspeed", "wind", "air"}) ? named("airspeed_mps", 3) : Guess();
       case Dimension::temperature:
-        if (wanted) return nothing("a target temperature");
+        if (wanted) return named("target_C", 2);
         if (air) return named("ambient_C", 3);
         if (electronics && !has(words, {"motor", "winding", "coil"}))
           return nothing("temperature of the electronics");
@@ -582,6 +582,7 @@ private:
     const std::set<std::string> of_a_joint = {"angle_deg",  "rate_dps",  "drive_A",
                                               "current_A",  "voltage_V", "target_deg",
                                               "target_dps", "torque_Nm", "motor_C"};
+    names.erase("target_C");  // goes with the temperature that is chosen
     for (const std::string& name : names) {
       std::vector<std::size_t> rivals;
       for (std::size_t i = 0; i < guesses_.size(); ++i)
@@ -630,6 +631,34 @@ private:
       guesses_[widest].why = "of several temperatures the one that changes most";
     }
     prefer_one_torque();
+    choose_target();
+  }
+
+  // A heater's target is asked for where its power is not recorded: then a loop of the model makes the power of it.
+  void choose_target() {
+    const std::size_t body = index_of("motor_C");
+    bool wanted = body != guesses_.size() && index_of("power_param") == guesses_.size();
+    // Klipper's `extruder.temp` has `extruder.target` beside it, Marlin's `B` has `B_target`.
+    const std::string shown = wanted ? list_[body].header : std::string(),
+                      heater = shown.substr(0, shown.rfind('.') + 1);
+    for (std::size_t i = 0; i < guesses_.size(); ++i) {
+      if (list_[i].header == "target_C") continue;
+      const bool beside =
+          list_[i].header == shown + "_target" || (!heater.empty() && list_[i].header == heater + "target");
+      const Words words = words_of(unit_in_header(list_[i].header).name);
+      const bool is_target =
+          guesses_[i].name == "target_C" ||
+          (guesses_[i].name.empty() && std::any_of(words.begin(), words.end(), [](const std::string& one) {
+             return is_one_of(one, wanted_words);
+           }));
+      const bool alike = wanted && is_target && !list_[i].text && group_of(words) == guesses_[body].group;
+      if (wanted && (beside || alike)) {
+        guesses_[i] = named("target_C", 2, "the target beside the temperature");
+        wanted = false;
+      } else if (guesses_[i].name == "target_C") {
+        guesses_[i] = nothing("a target temperature");
+      }
+    }
   }
 
   // A current that is the drive's makes its own torque one number too many.

@@ -127,9 +127,9 @@ std::vector<RunInput> inputs_of(const HeldOutRun& run) {
     bool only_if_it_varies;
   };
   static constexpr Input all[] = {{"power_param", false}, {"drive_A", false},    {"voltage_V", false},
-                                  {"target_deg", false},  {"target_dps", false}, {"torque_Nm", false},
-                                  {"heat_W", false},      {"supply_V", true},    {"ambient_C", true},
-                                  {"airspeed_mps", true}};
+                                  {"target_deg", false},  {"target_dps", false}, {"target_C", false},
+                                  {"torque_Nm", false},   {"heat_W", false},     {"supply_V", true},
+                                  {"ambient_C", true},    {"airspeed_mps", true}};
   std::vector<RunInput> list;
   for (const Input& input : all) {
     const Eigen::VectorXd* values = run.recorded != nullptr ? run.recorded->find(input.column) : nullptr;

@@ -76,7 +76,8 @@ public:
       fail("/format", "is " + shown(root["format"]) + "; expected \"" + format_id + "\"" +
                           (is_report ? ", which 'diagnose --augmented' writes" : ""));
     }
-    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "servo", "network", "effects"});
+    only(root, "",
+         {"format", "name", "supply", "current", "thermal", "axis", "servo", "heater", "network", "effects"});
     Model model;
     if (root.contains("name")) {
       if (!root["name"].is_string()) fail("/name", "is " + shown(root["name"]) + "; expected text");
@@ -87,6 +88,7 @@ public:
     if (root.contains("thermal")) read_thermal(root["thermal"], model);
     if (root.contains("axis")) read_axis(root["axis"], model);
     if (root.contains("servo")) read_servo(root["servo"], model);
+    if (root.contains("heater")) read_heater(root["heater"], model);
     if (root.contains("network")) read_network(root, model);
     if (root.contains("effects")) read_effects(root["effects"], model);
     for (const char* block : {"supply", "current", "thermal", "axis", "servo"})
@@ -388,6 +390,52 @@ private:
     model.servo = servo;
   }
 
+  void read_heater(const Json& block, Model& model) const {
+    const std::string here = "/heater";
+    object(block, here);
+    const std::string name = law(block, here, {"klipper_pid", "marlin_pid", "bang_bang"});
+    const auto common = [&](auto& heater) {
+      heater.max_power = number_or(block, here, "max_power", Allowed::positive, heater.max_power);
+      heater.period_s = number_or(block, here, "period_s", Allowed::positive, heater.period_s);
+      model.heater = heater;
+    };
+    const auto gains = [&](auto& pid) {
+      pid.kp_per_K = number(block, here, "kp_per_K", Allowed::positive);
+      pid.ki_per_K_s = number_or(block, here, "ki_per_K_s", Allowed::not_negative, 0.0);
+      pid.kd_s_per_K = number_or(block, here, "kd_s_per_K", Allowed::not_negative, 0.0);
+    };
+    std::vector<std::string> keys{"law", "acts_on", "max_power", "period_s"};
+    const auto also = [&](std::initializer_list<const char*> more) {
+      keys.insert(keys.end(), more.begin(), more.end());
+      only(block, here, keys);
+    };
+    if (name == "bang_bang") {
+      also({"max_delta_K"});
+      BangBangHeater heater;
+      heater.max_delta_K = number_or(block, here, "max_delta_K", Allowed::not_negative, heater.max_delta_K);
+      common(heater);
+    } else if (name == "klipper_pid") {
+      also({"kp_per_K", "ki_per_K_s", "kd_s_per_K", "smooth_time_s"});
+      KlipperPidHeater heater;
+      gains(heater);
+      heater.smooth_time_s =
+          number_or(block, here, "smooth_time_s", Allowed::not_negative, heater.smooth_time_s);
+      common(heater);
+    } else {
+      also({"kp_per_K", "ki_per_K_s", "kd_s_per_K", "functional_range_K"});
+      MarlinPidHeater heater;
+      gains(heater);
+      heater.functional_range_K =
+          number_or(block, here, "functional_range_K", Allowed::positive, heater.functional_range_K);
+      common(heater);
+    }
+    if (!block.contains("acts_on")) return;
+    if (block["acts_on"] != "recorded" && block["acts_on"] != "simulated")
+      fail("/heater/acts_on", "is " + shown(block["acts_on"]) + "; expected \"recorded\" or \"simulated\"");
+    model.heater_acts_on =
+        block["acts_on"] == "simulated" ? plant::HeaterActsOn::simulated : plant::HeaterActsOn::recorded;
+  }
+
   /// How well the constants of a block are known, as shares of their values.
   void read_uncertainty(const Json& block, const std::string& pointer, const std::string& name,
                         Model& model) const {
@@ -431,7 +479,7 @@ private:
   /// A thermal network. What is no network is said with the pointer to what is wrong in it.
   void read_network(const Json& root, Model& model) const {
     const std::string here = "/network";
-    for (const char* other : {"supply", "current", "thermal", "axis", "servo"})
+    for (const char* other : {"supply", "current", "thermal", "axis", "servo", "heater"})
       if (root.contains(other)) fail(below("", other), "stands beside a network; expected one or the other");
     const Json& block = root["network"];
     object(block, here);
@@ -631,6 +679,12 @@ std::string to_json(const Model& model) {
   if (model.axis) root["axis"]["law"] = model.axis->voltage_driven() ? "voltage" : "rigid";
   if (std::holds_alternative<PositionPidServo>(model.servo)) root["servo"]["law"] = "position_pid";
   if (std::holds_alternative<VelocityPiServo>(model.servo)) root["servo"]["law"] = "velocity_pi";
+  if (std::holds_alternative<KlipperPidHeater>(model.heater)) root["heater"]["law"] = "klipper_pid";
+  if (std::holds_alternative<MarlinPidHeater>(model.heater)) root["heater"]["law"] = "marlin_pid";
+  if (std::holds_alternative<BangBangHeater>(model.heater)) root["heater"]["law"] = "bang_bang";
+  if (model.heater_acts_on != plant::HeaterActsOn::usual)
+    root["heater"]["acts_on"] =
+        model.heater_acts_on == plant::HeaterActsOn::simulated ? "simulated" : "recorded";
   const auto* network =
       model.own ? dynamic_cast<const plant::NetworkPlant*>(model.own->equations.get()) : nullptr;
   if (network != nullptr) root["network"] = network_block(network->network_of(model), model.uncertainty);

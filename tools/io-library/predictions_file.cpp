@@ -81,7 +81,7 @@ std::string predictions_csv(const std::vector<HeldOutPrediction>& predictions,
   if (signals.empty()) {
     throw InputError(
         (recordings.empty() ? std::string() : recordings.front().name + ": ") +
-        "nothing to predict: the columns that the model's laws need (power_param with a supply and "
+        "nothing to predict: the columns that the model's laws need (power_param, or a heater's target_C, with a supply and "
         "ambient_C, or heat_W and ambient_C, or drive_A, voltage_V or a servo's target) are not recorded");
   }
   std::string out = "t_s";
@@ -129,7 +129,8 @@ bool is_measured_throughout(const Recording& recording) {
 
 Recording with_starts(Recording recording, const Model& model, const std::map<std::string, double>& starts) {
   if (model.own) return with_own_starts(std::move(recording), *model.own->equations->info(), starts);
-  const bool powered = recording.has("power_param") && (model.supply || recording.has("supply_V"));
+  const bool powered = (recording.has("power_param") || (model.has_heater() && recording.has("target_C"))) &&
+                       (model.supply || recording.has("supply_V"));
   const bool heated = (model.has_current() && powered) || recording.has("current_A") ||
                       recording.has("drive_A") || recording.has("heat_W");
   const double missing_value = std::numeric_limits<double>::quiet_NaN();

@@ -86,6 +86,28 @@ bool is_setting_of_heater(const std::string& key) {
   return false;
 }
 
+// The settings of a heater as the block of a model, where its control is one that the model has.
+std::string heater_block(const std::map<std::string, std::string>& keys) {
+  const bool pid = keys.at("control") == "pid";
+  if (!pid && keys.at("control") != "watermark") return {};
+  std::string block = std::string("\"heater\": {\"law\": ") + (pid ? "\"klipper_pid\"" : "\"bang_bang\"");
+  const auto put = [&](const char* key, const char* name) {
+    const auto found = keys.find(key);
+    if (found != keys.end() && is_number(found->second))
+      block += std::string(", \"") + name + "\": " + found->second;
+  };
+  if (pid) {
+    put("pid_kp", "kp_per_K");
+    put("pid_ki", "ki_per_K_s");
+    put("pid_kd", "kd_s_per_K");
+    put("smooth_time", "smooth_time_s");
+  } else {
+    put("max_delta", "max_delta_K");
+  }
+  put("max_power", "max_power");
+  return block + "}";
+}
+
 }  // namespace
 
 LogText klippy_as_csv(const std::string& name, const std::string& text) {
@@ -144,6 +166,7 @@ LogText klippy_as_csv(const std::string& name, const std::string& text) {
     if (keys.count("control") == 0) continue;
     std::string note = "[" + of + "]";
     for (const auto& [key, value] : keys) note += " " + key + "=" + value;
+    if (const std::string block = heater_block(keys); !block.empty()) note += "; in a model: " + block;
     log.notes.push_back(note);
   }
   return log;

@@ -15,10 +15,10 @@
 namespace thermopower::io {
 
 const std::vector<std::string>& known_columns() {
-  static const std::vector<std::string> names = {"t_s",        "power_param", "drive_A",      "voltage_V",
-                                                 "target_deg", "target_dps",  "torque_Nm",    "heat_W",
-                                                 "supply_V",   "ambient_C",   "airspeed_mps", "neighbour_C",
-                                                 "rate_dps",   "current_A",   "motor_C",      "angle_deg"};
+  static const std::vector<std::string> names = {
+      "t_s",         "power_param", "drive_A",   "voltage_V", "target_deg", "target_dps",
+      "target_C",    "torque_Nm",   "heat_W",    "supply_V",  "ambient_C",  "airspeed_mps",
+      "neighbour_C", "rate_dps",    "current_A", "motor_C",   "angle_deg"};
   return names;
 }
 

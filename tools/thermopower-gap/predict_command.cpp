@@ -85,8 +85,8 @@ std::map<std::string, double> starts_of(const std::vector<std::string>& texts, c
 
 // Inputs with missing cells leave holes in what is predicted: nothing fills them here, as the check of a diagnosis does.
 void warn_of_holes(const gap::Recording& recording, const gap::Model& model) {
-  std::vector<std::string> inputs{"power_param", "drive_A", "voltage_V", "target_deg", "target_dps",
-                                  "torque_Nm",   "heat_W",  "supply_V",  "ambient_C"};
+  std::vector<std::string> inputs{"power_param", "drive_A",   "voltage_V", "target_deg", "target_dps",
+                                  "target_C",    "torque_Nm", "heat_W",    "supply_V",   "ambient_C"};
   if (model.own) {
     inputs.clear();
     for (const auto& one : model.own->equations->info()->inputs) inputs.push_back(one.name);

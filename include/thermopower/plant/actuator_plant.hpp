@@ -26,7 +26,7 @@ namespace thermopower::plant {
 class ActuatorPlant : public Plant {
 public:
   const std::vector<Signal>& signals(const Segment& segment) const override {
-    static const std::vector<Signal> bench{Signal::current_A, Signal::motor_C},
+    static const std::vector<Signal> bench{Signal::current_A, Signal::motor_C, Signal::power_param},
         axis{Signal::angle_deg, Signal::rate_dps};
     return segment.axis ? axis : bench;
   }

@@ -3,19 +3,22 @@
 #pragma once
 
 #include <thermopower/actuator/duty.hpp>
+#include <thermopower/plant/bench_rates.hpp>
 #include <thermopower/plant/bench_state.hpp>
 #include <thermopower/plant/body_network.hpp>
 #include <thermopower/plant/charge_before.hpp>
 #include <thermopower/plant/exchange_step.hpp>
+#include <thermopower/plant/heater_loop.hpp>
 #include <thermopower/plant/rows.hpp>
 #include <thermopower/plant/instance.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace thermopower::plant {
 
-/// Simulates current and temperature of one motor, run by run.
+/// Simulates current and temperature of one motor, run by run. Its duty is recorded, or a heater's loop makes it of a target.
 ///
 /// Inputs are held over each interval. The coupled equations are integrated with the midpoint rule where an
 /// interval is short against every time constant and with sub-steps of the classical Runge-Kutta rule else;
@@ -44,23 +47,28 @@ public:
   template <class Sink>
   void run(Eigen::Index begin, Eigen::Index end, double run_start_s, BenchState<Scalar>& state,
            Sink&& sink) const {
+    std::optional<HeaterLoop<Scalar>> loop;
+    if (inputs_.heater_closed && inputs_.heat == HeatSource::law && !feed_.measured_current)
+      loop = set_out(begin, run_start_s, state);
+    loop_duty_ = loop ? &loop->duty() : nullptr;
     for (Eigen::Index row = begin; row < end; ++row) {
       const double t_s = inputs_.t_s[row] - run_start_s;
-      const bool driven = inputs_.heat == HeatSource::law || feed_.measured_motor;
-      BenchReadings<Scalar> read;
-      read.t_s = t_s;
-      read.measured_ambient_C = at(inputs_.ambient_C, row);
-      read.motor_C = instance_.thermal_structure.lagged ? state.thermometer_C : state.winding_C;
-      read.current_A = constant<Scalar>(0.0);
-      if (driven && inputs_.power_param.size() > 0) {
-        const Scalar winding_C =
-            feed_.measured_motor ? constant<Scalar>(at(inputs_.held_motor_C, row)) : state.winding_C;
-        read.current_A = circuit(row, t_s, winding_C, state.charge_Ah).current_A;
-      }
-      for (const auto& effect : instance_.bench_readings) effect(read);
-      sink(row, read);
-      if (row + 1 < end) follow(row, t_s, inputs_.t_s[row + 1] - inputs_.t_s[row], state);
+      const auto take_sample = [&](double now_s) { sample(*loop, row, now_s, state); };
+      if (loop) loop->arrive(t_s, take_sample);
+      sink(row, read(row, t_s, state));
+      if (row + 1 == end) break;
+      const double length_s = inputs_.t_s[row + 1] - inputs_.t_s[row];
+      if (!loop) follow(row, t_s, length_s, state);
+      else
+        loop->interval(t_s, t_s + length_s, take_sample,
+                       [&](double now_s, double lasts_s) { step(row, now_s, lasts_s, state); });
     }
+    loop_duty_ = nullptr;
+  }
+
+  /// The duty of 255 parts that a loop has set, while run() hands readings to its sink; NaN without a loop.
+  Scalar loop_power() const {
+    return loop_duty_ != nullptr ? Scalar(*loop_duty_ * full_heater_power) : constant<Scalar>(missing);
   }
 
   /// The state in which the readings at `row` are `motor_C`, all nodes alike.
@@ -96,8 +104,9 @@ public:
     terms.charge_Ah = charge_Ah;
     terms.supply_V =
         constant<Scalar>(inputs_.supply_V.size() > 0 ? inputs_.supply_V[row] : inputs_.nominal_V);
-    const double power = std::clamp(inputs_.power_param[row], 0.0, 255.0);
-    terms.duty = constant<Scalar>(duty_from_power(power));
+    terms.duty = loop_duty_ != nullptr
+                     ? *loop_duty_
+                     : constant<Scalar>(duty_from_power(std::clamp(inputs_.power_param[row], 0.0, 255.0)));
     terms.source_ohm = terms.series_ohm = terms.counter_V = zero;
     terms.tempco_per_K = instance_.ohmic ? instance_.winding.tempco_per_K : zero;
     for (const auto& effect : instance_.electrical) effect(terms);
@@ -212,6 +221,7 @@ public:
 
   /// Share of the motor's current that the supply carries: sqrt(duty).
   double charge_share(Eigen::Index row) const {
+    if (loop_duty_ != nullptr) return std::sqrt(value_of(*loop_duty_));
     return inputs_.power_param.size() == 0 ? 1.0 : share_of_supply(inputs_.power_param[row]);
   }
 
@@ -222,6 +232,48 @@ private:
 
   static double at(const Eigen::VectorXd& values, Eigen::Index row) {
     return values.size() > 0 ? values[row] : missing;
+  }
+
+  /// What the instruments show at a row in a state.
+  BenchReadings<Scalar> read(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
+    const bool driven = inputs_.heat == HeatSource::law || feed_.measured_motor;
+    BenchReadings<Scalar> read;
+    read.t_s = t_s;
+    read.measured_ambient_C = at(inputs_.ambient_C, row);
+    read.motor_C = instance_.thermal_structure.lagged ? state.thermometer_C : state.winding_C;
+    read.current_A = constant<Scalar>(0.0);
+    if (driven && inputs_.power_param.size() > 0) {
+      const Scalar winding_C =
+          feed_.measured_motor ? constant<Scalar>(at(inputs_.held_motor_C, row)) : state.winding_C;
+      read.current_A = circuit(row, t_s, winding_C, state.charge_Ah).current_A;
+    }
+    for (const auto& effect : instance_.bench_readings) effect(read);
+    return read;
+  }
+
+  /// Lets the heater's loop read the thermometer. A jump of its duty that came later would have left the body to the duty before it
+  /// until then.
+  void sample(HeaterLoop<Scalar>& loop, Eigen::Index row, double t_s, BenchState<Scalar>& state) const {
+    const Slope before = loop.jumps() ? slope(row, t_s, state) : Slope();
+    const Scalar moved_s = loop.sample(read(row, t_s, state).motor_C, inputs_.target_C[row]);
+    if (is_constant(moved_s, 0.0)) return;
+    const Slope after = slope(row, t_s, state);
+    state = moved(moved(state, before, moved_s), after, Scalar(-moved_s));
+  }
+
+  /// The heater's loop as it begins at a row: it has held the body where that is.
+  HeaterLoop<Scalar> set_out(Eigen::Index begin, double run_start_s, const BenchState<Scalar>& state) const {
+    HeaterLoop<Scalar> loop(instance_.heater);
+    const Scalar all = constant<Scalar>(1.0);
+    const double t_s = inputs_.t_s[begin] - run_start_s;
+    loop_duty_ = &all;
+    const Circuit full = circuit(begin, t_s, state.winding_C, state.charge_Ah);
+    const HeatFlows flows = heat_flows(begin, t_s, full, state.winding_C, state.surface_C);
+    loop_duty_ = nullptr;
+    const double held = value_of(flows.loss_W) / value_of(flows.heat_W);
+    loop.start(read(begin, t_s, state).motor_C, inputs_.target_C[begin], std::isfinite(held) ? held : 0.0,
+               t_s);
+    return loop;
   }
 
   Scalar reading(Eigen::Index row, double motor_C) const {
@@ -312,42 +364,10 @@ private:
             : zero;
   }
 
-  /// The rise of the whole motor by a joule; for the polynomial law just above its least voltage.
-  Scalar storage_K_per_J(const BenchState<Scalar>& state) const {
-    if (instance_.lumped) return 1.0 / instance_.heat_capacity.heat_capacity_J_per_K;
-    return instance_.heating_law.rise_K_per_J(instance_.heating_law.minimum_V_rms + 1.0, state.winding_C);
-  }
-
-  /// Fastest decay rate of the linear part, 1/s.
-  double fastest_per_s(const BenchState<Scalar>& state) const {
-    const auto& shape = instance_.thermal_structure;
-    if (!instance_.lumped && !instance_.thesis_thermal) return 0.0;
-    const double rise_K_per_J = value_of(storage_K_per_J(state));
-    const double base = instance_.lumped ? value_of(instance_.conductance_W_per_K) * rise_K_per_J
-                                         : value_of(instance_.cooling_per_s);
-    double fastest = 2.0 * base;
-    if (shape.two_nodes) {
-      const double share = value_of(shape.winding_share);
-      const double flow = value_of(shape.coupling_W_per_K) * rise_K_per_J;
-      fastest = std::max(fastest, flow / share + (flow + 2.0 * base) / (1.0 - share));
-    }
-    if (shape.soaks) {
-      const double rest = value_of(shape.own_share()), coupling = value_of(shape.soaking_W_per_K);
-      const double surface = rest * (shape.two_nodes ? 1.0 - value_of(shape.winding_share) : 1.0);
-      const double away = coupling + value_of(shape.soaking_loss_W_per_K);
-      fastest = fastest / rest + away * value_of(shape.soaking_K_per_J(constant<Scalar>(rise_K_per_J))) +
-                coupling * rise_K_per_J / surface;
-    }
-    if (shape.enclosed)
-      fastest +=
-          (2.0 * base + value_of(shape.enclosed_W_per_K) * rise_K_per_J) / value_of(shape.enclosed_share);
-    return fastest;
-  }
-
   void step(Eigen::Index row, double t_s, double dt_s, BenchState<Scalar>& state) const {
     const auto& shape = instance_.thermal_structure;
     coupling_W_per_K_ = shape.coupling_W_per_K;
-    double stiffness = dt_s * fastest_per_s(state);
+    double stiffness = dt_s * fastest_per_s(instance_, state);
     if (shape.has_further_nodes()) {
       further_steps(row, t_s, dt_s, stiffness, state);
       return;
@@ -375,32 +395,18 @@ private:
   void classical_steps(Eigen::Index row, double t_s, double dt_s, int steps,
                        BenchState<Scalar>& state) const {
     const double h_s = dt_s / steps;
-    const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
-      return Scalar((a + 2.0 * (b + c) + d) * (1.0 / 6.0));
-    };
     for (int i = 0; i < steps; ++i) {
       const double now_s = t_s + i * h_s;
       const Slope k1 = slope(row, now_s, state);
       const Slope k2 = slope(row, now_s + 0.5 * h_s, moved(state, k1, 0.5 * h_s));
       const Slope k3 = slope(row, now_s + 0.5 * h_s, moved(state, k2, 0.5 * h_s));
       const Slope k4 = slope(row, now_s + h_s, moved(state, k3, h_s));
-      Slope all{mean(k1.winding, k2.winding, k3.winding, k4.winding),
-                mean(k1.surface, k2.surface, k3.surface, k4.surface),
-                mean(k1.charge, k2.charge, k3.charge, k4.charge),
-                {}};
-      all.further.any = k1.further.any;
-      if (all.further.any) {
-        all.further.soaking_C =
-            mean(k1.further.soaking_C, k2.further.soaking_C, k3.further.soaking_C, k4.further.soaking_C);
-        all.further.enclosed_C =
-            mean(k1.further.enclosed_C, k2.further.enclosed_C, k3.further.enclosed_C, k4.further.enclosed_C);
-      }
-      settle(state, moved(state, all, h_s), h_s);
+      settle(state, moved(state, runge_kutta_mean(k1, k2, k3, k4), h_s), h_s);
     }
   }
 
   Network network(const Places& at, const BenchState<Scalar>& state) const {
-    const Scalar rise_K_per_J = storage_K_per_J(state);
+    const Scalar rise_K_per_J = storage_K_per_J(instance_, state);
     const Scalar loss_per_s =
         instance_.lumped ? Scalar(instance_.conductance_W_per_K * rise_K_per_J) : instance_.cooling_per_s;
     return body_network(instance_.thermal_structure, at, coupling_W_per_K_, rise_K_per_J, loss_per_s);
@@ -453,7 +459,7 @@ private:
     const double shortest_s = dt_s / 1024.0;
     const auto& shape = instance_.thermal_structure;
     const Scalar share = shape.winding_share, rest = 1.0 - shape.winding_share;
-    const Scalar rise_K_per_J = storage_K_per_J(state);
+    const Scalar rise_K_per_J = storage_K_per_J(instance_, state);
     const Scalar flow_per_s = coupling_W_per_K_ * rise_K_per_J;
     const Scalar loss_per_s =
         instance_.lumped ? Scalar(instance_.conductance_W_per_K * rise_K_per_J) : instance_.cooling_per_s;
@@ -511,6 +517,8 @@ private:
   const Inputs& inputs_;
   Feed feed_;
   mutable Scalar coupling_W_per_K_;  ///< of the step under way
+  mutable const Scalar* loop_duty_ =
+      nullptr;  ///< that the heater's loop has set, in run(); null: it is recorded
 };
 
 }  // namespace thermopower::plant

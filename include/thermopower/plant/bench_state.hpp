@@ -43,9 +43,31 @@ struct BenchSlope {
   FurtherNodes<Scalar> further = {};  ///< K/s
 };
 
-/// A state that moved at a slope for `h_s`; the thermometer stays where it was.
+/// The mean of the four slopes of a step of the classical Runge-Kutta rule.
 template <class Scalar>
-BenchState<Scalar> moved(const BenchState<Scalar>& from, const BenchSlope<Scalar>& rate, double h_s) {
+BenchSlope<Scalar> runge_kutta_mean(const BenchSlope<Scalar>& k1, const BenchSlope<Scalar>& k2,
+                                    const BenchSlope<Scalar>& k3, const BenchSlope<Scalar>& k4) {
+  const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
+    return Scalar((a + 2.0 * (b + c) + d) * (1.0 / 6.0));
+  };
+  BenchSlope<Scalar> all{mean(k1.winding, k2.winding, k3.winding, k4.winding),
+                         mean(k1.surface, k2.surface, k3.surface, k4.surface),
+                         mean(k1.charge, k2.charge, k3.charge, k4.charge),
+                         {}};
+  all.further.any = k1.further.any;
+  if (all.further.any) {
+    all.further.soaking_C =
+        mean(k1.further.soaking_C, k2.further.soaking_C, k3.further.soaking_C, k4.further.soaking_C);
+    all.further.enclosed_C =
+        mean(k1.further.enclosed_C, k2.further.enclosed_C, k3.further.enclosed_C, k4.further.enclosed_C);
+  }
+  return all;
+}
+
+/// A state that moved at a slope for `h_s`; the thermometer stays where it was.
+/// @param h_s  a plain number, or one that varies
+template <class Scalar, class Length>
+BenchState<Scalar> moved(const BenchState<Scalar>& from, const BenchSlope<Scalar>& rate, const Length& h_s) {
   BenchState<Scalar> to{from.winding_C + rate.winding * h_s, from.surface_C + rate.surface * h_s,
                         from.thermometer_C, from.charge_Ah + rate.charge * h_s};
   if (rate.further.any) {

@@ -57,6 +57,7 @@ struct Instance {
   bool voltage_driven = false;                ///< the drive is a voltage
   Scalar motor_ohm;                           ///< where `voltage_driven`
   ServoGains<Scalar> servo;                   ///< where the model has a servo
+  HeaterLaw heater;                           ///< of the loop that makes the duty, where there is one
 
   ThermalStructure<Scalar> thermal_structure;  ///< after the effects that shape it
   AxisStructure<Scalar> axis_structure;        ///< after the effects that shape it
@@ -77,6 +78,7 @@ struct Instance {
   Instance(const Model& model, const std::vector<Scalar>& factors,
            const std::vector<AddedEffect<Scalar>>& added, const Catalogue& catalogue) {
     set_constants(model, factors);
+    heater = model.heater;
     const Scalar none = constant<Scalar>(0.0);
     thermal_structure = {constant<Scalar>(1.0), none, none, none, none, none, none, none, none};
     axis_structure = {none, none, none, none, none, false, false, false, none, false};

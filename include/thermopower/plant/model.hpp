@@ -106,12 +106,51 @@ struct VelocityPiServo {
   double slew_A_per_s = 0.0;     ///< largest change of the command in A/s, >= 0; 0: no limit
 };
 
+/// `"law": "klipper_pid"`: the loop of a heater as Klipper has it, with the gains of its configuration, which count the duty in 255
+/// parts. The slope is smoothed over `smooth_time_s`; the integral stands still while their sum is out of the limits.
+struct KlipperPidHeater {
+  double kp_per_K = 20.0;      ///< parts of 255 per kelvin, > 0
+  double ki_per_K_s = 1.0;     ///< parts of 255 per kelvin second, >= 0
+  double kd_s_per_K = 100.0;   ///< parts of 255 per kelvin a second, >= 0
+  double max_power = 1.0;      ///< largest duty, above 0 to 1
+  double smooth_time_s = 1.0;  ///< over which the slope is smoothed, >= 0
+  double period_s = 0.3;       ///< between samples, > 0
+};
+
+/// `"law": "marlin_pid"`: the same as Marlin has it. Further than `functional_range_K` from the target there is all power or none,
+/// and integral and slope begin anew. The slope is a moving average of which the newest has a share of 0.05.
+struct MarlinPidHeater {
+  double kp_per_K = 20.0;            ///< parts of 255 per kelvin, > 0
+  double ki_per_K_s = 1.0;           ///< parts of 255 per kelvin second, >= 0
+  double kd_s_per_K = 100.0;         ///< parts of 255 per kelvin a second, >= 0
+  double max_power = 1.0;            ///< largest duty, above 0 to 1
+  double functional_range_K = 10.0;  ///< > 0
+  double period_s = 0.164;           ///< between samples, > 0
+};
+
+/// `"law": "bang_bang"`: all power from `max_delta_K` below the target until as much above it (Klipper's watermark, Marlin's bed).
+struct BangBangHeater {
+  double max_delta_K = 2.0;  ///< half the band, >= 0
+  double max_power = 1.0;    ///< duty where it is on, above 0 to 1
+  double period_s = 0.3;     ///< between samples, > 0
+};
+
+/// How a heater is driven to `target_C`; `std::monostate`: by nothing that the model knows.
+using HeaterLaw = std::variant<std::monostate, KlipperPidHeater, MarlinPidHeater, BangBangHeater>;
+
+/// The temperature that a heater's loop acts on in a diagnosis, where the duty is not recorded and the body's temperature is.
+enum class HeaterActsOn {
+  usual,  ///< a PID on the simulated one; a two-point loop on the recorded one, as noise makes its phase wander
+  recorded,  ///< what the log has: its duty is then known, whatever is wrong with the body
+  simulated  ///< the whole loop is simulated, even where the duty is recorded
+};
+
 /// Parameters of one effect by name.
 using EffectParameters = std::map<std::string, double>;
 
 /// One constant of a model: the block and name it has in the model file, and its value.
 struct NamedConstant {
-  std::string block;   ///< `supply`, `current`, `thermal`, `axis` or `servo`
+  std::string block;   ///< `supply`, `current`, `thermal`, `axis`, `servo` or `heater`
   std::string name;    ///< as in the file, such as `resistance_ohm`
   double value = 0.0;  ///< in the unit the name ends in
 };
@@ -195,7 +234,10 @@ struct Model {
   /// From target to command, where the recording holds a target and no command; `std::monostate`: absent. Commands
   /// are currents; of a motor at a voltage, currents at standstill.
   std::variant<std::monostate, PositionPidServo, VelocityPiServo> servo;
-  std::map<std::string, EffectParameters> effects;  ///< id -> parameter -> value
+  /// From a target temperature to the duty of the heater, where the recording holds `target_C` and no `power_param`.
+  HeaterLaw heater;
+  HeaterActsOn heater_acts_on = HeaterActsOn::usual;  ///< in a diagnosis
+  std::map<std::string, EffectParameters> effects;    ///< id -> parameter -> value
   /// How well constants are known: standard deviation as a share of the value, above 0 to 1, by
   /// block.constant (as in `thermal.conductance_W_per_K`) and effects.id.parameter. Those that are not in it are
   /// known to 5 %.
@@ -207,8 +249,14 @@ struct Model {
     return !std::holds_alternative<std::monostate>(current);
   }  ///< electrical block?
   bool has_thermal() const { return !std::holds_alternative<std::monostate>(thermal); }  ///< thermal block?
-  bool has_axis() const { return axis.has_value(); }                                 ///< mechanical block?
-  bool has_servo() const { return !std::holds_alternative<std::monostate>(servo); }  ///< servo block?
+  bool has_axis() const { return axis.has_value(); }                                   ///< mechanical block?
+  bool has_servo() const { return !std::holds_alternative<std::monostate>(servo); }    ///< servo block?
+  bool has_heater() const { return !std::holds_alternative<std::monostate>(heater); }  ///< heater block?
+  /// Whether a diagnosis simulates the heater's whole loop, and not its answer to the recorded temperature.
+  bool simulates_heater_loop() const {
+    return heater_acts_on == HeaterActsOn::simulated ||
+           (heater_acts_on == HeaterActsOn::usual && !std::holds_alternative<BangBangHeater>(heater));
+  }
 
   /// Every constant of every block present, in a fixed order.
   std::vector<NamedConstant> constants() const;

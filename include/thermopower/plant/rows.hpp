@@ -101,6 +101,8 @@ struct Inputs {
   Eigen::VectorXd seen_dps;                 ///< measured rate without holes, of a closed loop; else empty
   Eigen::VectorXd servo_A;                  ///< of a closed loop: what the servo makes of the measured motion
   Eigen::VectorXd servo_integral;           ///< of a closed loop: the servo's integral before each row
+  Eigen::VectorXd target_C;                 ///< of the heater's loop
+  bool heater_closed = false;               ///< the duty is not recorded: a loop makes it of `target_C`
   Eigen::VectorXd supply_V;                 ///< supply voltage
   Eigen::VectorXd ambient_C;                ///< air temperature
   Eigen::VectorXd airspeed_mps;             ///< of the air past the motor
@@ -131,6 +133,8 @@ struct Inputs {
 
   /// Number of rows.
   Eigen::Index rows() const { return t_s.size(); }
+  /// Whether the duty is what a heater's loop makes of the recorded temperature.
+  bool heater_answers() const { return target_C.size() > 0 && !heater_closed; }
   /// Whether inputs change at instants between the rows that nobody knows: `next_share` is their mean.
   bool switched_anytime() const { return (next_share.array() > 0.0 && next_share.array() < 1.0).any(); }
   /// Whether the command is known but for some error.

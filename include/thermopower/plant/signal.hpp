@@ -16,14 +16,15 @@ namespace thermopower::plant {
 /// (`static_cast<Signal>(i)`); what they are called, and their units, then stands in its list, and
 /// `to_string` and `unit_of` do not apply.
 enum class Signal : int {
-  current_A = 0,  ///< motor current
-  motor_C = 1,    ///< what the motor's thermometer shows
-  angle_deg = 2,  ///< angle of the axis
-  rate_dps = 3,   ///< its rate
+  current_A = 0,    ///< motor current
+  motor_C = 1,      ///< what the motor's thermometer shows
+  angle_deg = 2,    ///< angle of the axis
+  rate_dps = 3,     ///< its rate
+  power_param = 4,  ///< duty of the heater in 255 parts, where a loop makes it; not judged
 };
 
 /// Number of signals of our own plants.
-inline constexpr int actuator_signal_count = 4;
+inline constexpr int actuator_signal_count = 5;
 
 /// Most signals that a plant may have, a user's own included: three joints have six. Arrays by signal are this long;
 /// the places that a plant does not use stay empty.
@@ -42,13 +43,13 @@ inline constexpr int count_of(Signal) { return actuator_signal_count; }
 
 /// Column name of a signal of our own plants.
 inline const char* to_string(Signal signal) {
-  constexpr const char* names[] = {"current_A", "motor_C", "angle_deg", "rate_dps"};
+  constexpr const char* names[] = {"current_A", "motor_C", "angle_deg", "rate_dps", "power_param"};
   return names[static_cast<int>(signal)];
 }
 
 /// Unit of a signal of our own plants as reports spell it.
 inline const char* unit_of(Signal signal) {
-  constexpr const char* units[] = {"A", "degC", "deg", "deg/s"};
+  constexpr const char* units[] = {"A", "degC", "deg", "deg/s", ""};
   return units[static_cast<int>(signal)];
 }
 

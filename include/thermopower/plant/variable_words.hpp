@@ -23,6 +23,7 @@ inline const VariableWords* words_of(const std::string& name) {
       {"v_rms_V", "RMS voltage", "V"},
       {"target_deg", "target angle", "deg"},
       {"target_dps", "target rate", "deg/s"},
+      {"target_C", "target temperature", "degC"},
       {"torque_Nm", "external torque", "N m"},
       {"heat_W", "heat", "W"},
       {"supply_V", "supply voltage", "V"},

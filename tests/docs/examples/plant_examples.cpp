@@ -11,6 +11,7 @@
 #include <thermopower/gap/pool/mixed_effects.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/plant/goal_profile.hpp>
+#include <thermopower/plant/heater_loop.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/plant/exchange_step.hpp>
@@ -224,6 +225,19 @@ TEST_CASE("a servo's gains") {
   const double command_A = gains.command_A(9.0, 0.0, 10.0, 0.0, 0.0);  // a degree short of the target
   //! [servo gains]
   CHECK(command_A == Approx(0.02));
+}
+
+TEST_CASE("a heater's loop") {
+  //! [heater loop]
+  plant::HeaterLoop<double> loop(plant::BangBangHeater{2.0, 1.0, 0.3});  // on and off 2 K around the target
+  loop.start(24.0, 60.0, 0.0);                                           // cold, target 60 degC
+  loop.sample(57.0, 60.0);
+  const double below = loop.duty();
+  loop.sample(62.5, 60.0);
+  const double above = loop.duty();
+  //! [heater loop]
+  CHECK(below == 1.0);
+  CHECK(above == 0.0);
 }
 
 TEST_CASE("the set point of a servo") {

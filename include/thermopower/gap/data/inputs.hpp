@@ -80,6 +80,9 @@ inline void close_loop(const Model& model, Inputs& inputs) {
   replay_servo(model, inputs);
 }
 
+/// The column in which with_heater_duty() leaves what a heater's loop makes of the recorded temperature, 0..255.
+inline constexpr const char* heater_power_column = "heater_power";
+
 /// The names of a recording's columns, as sentences have them.
 inline std::string columns_in_words(const Recording& recording) {
   constexpr std::size_t most = 12;
@@ -118,6 +121,24 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
   inputs.neighbour_C = take("neighbour_C");
   if (model.supply) inputs.nominal_V = model.supply->nominal_V;
 
+  const bool duty_is_recorded = inputs.power_param.size() > 0;
+  if (model.has_heater() && recording.has("target_C") &&
+      (!duty_is_recorded || model.heater_acts_on == plant::HeaterActsOn::simulated)) {
+    const bool answers = recording.has(heater_power_column);
+    inputs.target_C = take("target_C");
+    inputs.heater_closed = !answers || model.simulates_heater_loop();
+    if (!duty_is_recorded)
+      inputs.power_param =
+          answers ? take(heater_power_column) : Eigen::VectorXd(Eigen::VectorXd::Zero(inputs.rows()));
+  }
+  if (inputs.heater_answers()) {
+    // A row in which it was switched: the instant is known to a part of the time between rows.
+    constexpr double instant = 0.3;
+    const double most = inputs.power_param.maxCoeff();
+    inputs.command_unknown.between =
+        ((inputs.power_param.array() > 0.0) && (inputs.power_param.array() < most))
+            .select(Eigen::VectorXd::Constant(inputs.rows(), instant * most), 0.0);
+  }
   const bool powered = inputs.power_param.size() > 0 && (model.supply || inputs.supply_V.size() > 0);
   const bool ohmic = std::holds_alternative<OhmicCurrentModel>(model.current);
   if (model.has_current() && powered) inputs.heat = HeatSource::law;

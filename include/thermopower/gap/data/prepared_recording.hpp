@@ -174,8 +174,8 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
     believed_.runs = cut_at(believed_.runs, elsewhere, false);
   }
   electrical_ = model.has_current() && recorded.has("power_param");
-  drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && !recorded.has("heat_W") &&
-                       model.has_thermal();
+  drives_by_current_ = !recorded.has("power_param") && !recorded.has(heater_power_column) &&
+                       !recorded.has("drive_A") && !recorded.has("heat_W") && model.has_thermal();
   mask_outputs(recorded, list);
   fill_inputs(model, recorded, list);
   if (moves_) mark_under_way(believed_);

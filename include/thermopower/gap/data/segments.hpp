@@ -65,15 +65,16 @@ inline const std::vector<InputColumn>& input_columns() {
   static const std::vector<InputColumn> columns = {
       {"power_param", InputPace::command}, {"drive_A", InputPace::command},
       {"voltage_V", InputPace::command},   {"target_deg", InputPace::command},
-      {"target_dps", InputPace::command},  {"torque_Nm", InputPace::command},
-      {"heat_W", InputPace::command},      {"supply_V", InputPace::slow},
-      {"ambient_C", InputPace::slow},      {"airspeed_mps", InputPace::slow},
-      {"neighbour_C", InputPace::slow}};
+      {"target_dps", InputPace::command},  {"target_C", InputPace::command},
+      {"torque_Nm", InputPace::command},   {"heat_W", InputPace::command},
+      {"supply_V", InputPace::slow},       {"ambient_C", InputPace::slow},
+      {"airspeed_mps", InputPace::slow},   {"neighbour_C", InputPace::slow}};
   return columns;
 }
 
 /// Whether a baseline ignores an input: then its holes cut no run.
 inline bool is_ignored(const Model& model, const std::string& column) {
+  if (column == "target_C") return !model.own && !model.has_heater();
   return column == "neighbour_C" && !model.own &&
          model.effects.find("neighbour_heating") == model.effects.end();
 }
@@ -202,7 +203,7 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
   const double pause = std::max(shortest_pause(steps), unnoticed_s(model));
   std::vector<std::pair<const Eigen::VectorXd*, CommandRange>> commands;
   for (const InputColumn& input : input_columns())
-    if (input.pace == InputPace::command && r.has(input.name))
+    if (input.pace == InputPace::command && r.has(input.name) && !is_ignored(model, input.name))
       commands.emplace_back(r.find(input.name), CommandRange(*r.find(input.name)));
   RowMask cut(static_cast<std::size_t>(r.rows()), 0);
   double worst = 0.0;

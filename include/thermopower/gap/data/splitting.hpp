@@ -14,7 +14,7 @@ namespace thermopower::gap {
 /// Takes the last part of a recording away as held-out data.
 ///
 /// Whole excitation segments are held out: the last runs where there are several, else the rows from the
-/// change of excitation (a step of `power_param`) that is nearest to the wanted fraction, looked for within a
+/// change of excitation (a step of `power_param`, or of a heater's `target_C`) that is nearest to the wanted fraction, looked for within a
 /// tenth of the rows; never interleaved samples.
 inline std::pair<Recording, Recording> split(const Recording& recording, double held_out_fraction) {
   const Eigen::Index rows = recording.rows();
@@ -27,8 +27,10 @@ inline std::pair<Recording, Recording> split(const Recording& recording, double 
     if (run.begin > 0 && std::abs(run.begin - wanted) <= 2 * reach &&
         std::abs(run.begin - wanted) < std::abs(at - wanted) + (at == wanted ? 2 * reach : 0))
       at = run.begin;
-  if (at == wanted && recording.find("power_param") != nullptr) {
-    const Eigen::VectorXd& power = recording.column("power_param");
+  const Eigen::VectorXd* const excitation =
+      recording.find("power_param") != nullptr ? recording.find("power_param") : recording.find("target_C");
+  if (at == wanted && excitation != nullptr) {
+    const Eigen::VectorXd& power = *excitation;
     for (Eigen::Index offset = 0; offset <= reach; ++offset) {
       for (Eigen::Index row : {wanted + offset, wanted - offset})
         if (row > 0 && row < rows && power[row] != power[row - 1] && std::isfinite(power[row]) &&

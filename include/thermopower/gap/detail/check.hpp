@@ -7,6 +7,7 @@
 #include <thermopower/gap/data/current_noise.hpp>
 #include <thermopower/gap/data/driven_before.hpp>
 #include <thermopower/gap/data/experiment.hpp>
+#include <thermopower/gap/data/heater_duty.hpp>
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
@@ -228,7 +229,10 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
     const Inputs& inputs = one.inputs();
     return plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs)).heat_W;
   };
-  const auto is_heated = [](const PreparedRecording& one) { return one.inputs().judged(Signal::motor_C); };
+  const auto is_heated = [](const PreparedRecording& one) {
+    return one.inputs().judged(Signal::motor_C) &&
+           one.inputs().target_C.size() == 0;  // a loop's duty is a mean
+  };
   const auto seen_in = [&](const std::vector<PreparedRecording>& recordings) {
     HeatBetweenRows between;
     for (const PreparedRecording& one : recordings)
@@ -264,11 +268,13 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   CheckedRecordings result;
   std::vector<Finding> others;
   double most_power = 0.0;
-  for (const auto* all : {&train, &held_out})
-    for (const Recording& one : *all)
+  for (auto* all : {&train, &held_out})
+    for (Recording& one : *all) {
+      one = with_heater_duty(model, std::move(one));
       if (one.has("power_param"))
         for (const double power : one.column("power_param"))
           if (power > most_power) most_power = power;
+    }
   std::vector<std::vector<RunSpan>> spans;
   const auto take = [&](std::vector<Recording>& recordings, std::vector<PreparedRecording>& to) {
     to.reserve(recordings.size());

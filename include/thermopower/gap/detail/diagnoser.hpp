@@ -19,6 +19,7 @@
 #include <thermopower/gap/report/parts.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/simulate.hpp>
+#include <thermopower/gap/data/heater_duty.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 
 #include <algorithm>
@@ -91,7 +92,7 @@ private:
       for (Recording& one : first) {
         if (const auto problem = one.validate())
           throw InvalidInput("recording '" + one.name + "': " + *problem);
-        auto parts = split(one, options_.held_out_fraction);
+        auto parts = split(with_heater_duty(model_, std::move(one)), options_.held_out_fraction);
         one = std::move(parts.first);
         last.push_back(std::move(parts.second));
       }

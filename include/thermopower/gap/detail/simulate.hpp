@@ -24,7 +24,8 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model,
   std::array<int, signal_count> column;
   column.fill(-1);
   for (int i = 0; i < signal_count; ++i)
-    if (inputs[0].judged(static_cast<Signal>(i))) {
+    if (inputs[0].judged(static_cast<Signal>(i)) ||
+        (static_cast<Signal>(i) == Signal::power_param && inputs[0].bench() && inputs[0].heater_closed)) {
       column[static_cast<std::size_t>(i)] = static_cast<int>(results.size());
       results.push_back(
           {signal_name(model, static_cast<Signal>(i)), Eigen::VectorXd::Constant(recording.rows(), missing)});

@@ -94,9 +94,10 @@ public:
     }
     if (!model.has_current() && !model.has_thermal()) return;
     bench_ = prepare(model, all);
-    append(plant::bench_balances(model, catalogue, bench_,
-                                 covariates(all, {"power_param", "drive_A", "supply_V", "ambient_C",
-                                                  "current_A", "motor_C", "angle_deg", "heat_W"})));
+    std::vector<std::string> known{"power_param", "drive_A", "supply_V",  "ambient_C",
+                                   "current_A",   "motor_C", "angle_deg", "heat_W"};
+    if (model.has_heater()) known.insert(known.end(), {"target_C", heater_power_column});
+    append(plant::bench_balances(model, catalogue, bench_, covariates(all, known)));
   }
   RecordedBalances(const RecordedBalances&) = delete;  // the balances refer to its rows
   RecordedBalances& operator=(const RecordedBalances&) = delete;

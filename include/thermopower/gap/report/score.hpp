@@ -146,6 +146,7 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
       if (copy.drive_A.size() > 0) copy.drive_A[row] += by;
       if (inputs.heat == HeatSource::measured) copy.held_current_A[row] += by;
       if (copy.voltage_V.size() > 0) copy.voltage_V[row] += by;
+      if (inputs.heater_answers()) copy.power_param[row] += by;
     }
   }
   if (noisy.empty()) return wander;

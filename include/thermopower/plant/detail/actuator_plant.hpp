@@ -74,7 +74,7 @@ public:
         carried_(at_rest()) {}
 
   void roll(const Segment& segment, const Start& start, Readings& out) override {
-    out.reset(segment.begin, segment.end, 2, directions_);
+    out.reset(segment.begin, segment.end, segment.axis ? 2 : 3, directions_);
     const std::array<Scalar, 2> from{start_scalar(start, 0), start_scalar(start, 1)};
     if (segment.axis) roll_axis(segment, from, out);
     else roll_bench(segment, from, out);
@@ -192,6 +192,7 @@ private:
                 [&](Eigen::Index row, const BenchReadings<Scalar>& read) {
                   out.put(row, 0, read.current_A);
                   out.put(row, 1, read.motor_C);
+                  if (inputs.heater_closed) out.put(row, 2, rollout.loop_power());
                 });
   }
 

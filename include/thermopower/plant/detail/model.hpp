@@ -77,6 +77,26 @@ void for_each_constant(ModelType& model, const VisitConstant<ModelType>& visit) 
     visit("servo", "delay_s", velocity->delay_s);
     if (velocity->slew_A_per_s != 0.0) visit("servo", "slew_A_per_s", velocity->slew_A_per_s);
   }
+  const auto pid = [&](auto& heater) {
+    visit("heater", "kp_per_K", heater.kp_per_K);
+    visit("heater", "ki_per_K_s", heater.ki_per_K_s);
+    visit("heater", "kd_s_per_K", heater.kd_s_per_K);
+  };
+  if (auto* klipper = std::get_if<KlipperPidHeater>(&model.heater)) {
+    pid(*klipper);
+    visit("heater", "max_power", klipper->max_power);
+    visit("heater", "smooth_time_s", klipper->smooth_time_s);
+    visit("heater", "period_s", klipper->period_s);
+  } else if (auto* marlin = std::get_if<MarlinPidHeater>(&model.heater)) {
+    pid(*marlin);
+    visit("heater", "max_power", marlin->max_power);
+    visit("heater", "functional_range_K", marlin->functional_range_K);
+    visit("heater", "period_s", marlin->period_s);
+  } else if (auto* bang_bang = std::get_if<BangBangHeater>(&model.heater)) {
+    visit("heater", "max_delta_K", bang_bang->max_delta_K);
+    visit("heater", "max_power", bang_bang->max_power);
+    visit("heater", "period_s", bang_bang->period_s);
+  }
   if (model.own)
     for (auto& constant : model.own->constants)
       visit(constant.block.c_str(), constant.name.c_str(), constant.value);
@@ -196,7 +216,8 @@ THERMOPOWER_GAP_INLINE std::optional<std::string> Model::validate() const {
     return field == "nominal_V" || field == "resistance_ohm" || field == "heat_capacity_J_per_K" ||
            field == "conductance_W_per_K" || field == "cooling_per_min" || field == "inertia_kgm2" ||
            field == "limit_A" || field == "period_s" || field == "slew_A_per_s" || field == "dead_zone_deg" ||
-           field == "profile_dps" || field == "profile_dps2";
+           field == "profile_dps" || field == "profile_dps2" || field == "kp_per_K" || field == "max_power" ||
+           field == "functional_range_K";
   };
   detail::for_each_constant(*this, [&](const char* block, const char* field, const double& value) {
     if (problem) return;
@@ -211,6 +232,15 @@ THERMOPOWER_GAP_INLINE std::optional<std::string> Model::validate() const {
     problem = "axis.torque_constant_Nm_per_A is 0, expected another number";
   if (!problem && has_servo() && get("servo.delay_s") < 0.0)
     problem = "servo.delay_s is negative, expected 0 or more";
+  if (!problem && has_heater() && get("heater.max_power") > 1.0)
+    problem = "heater.max_power is above 1, expected a share of the time, above 0 to 1";
+  for (const char* gain : {"ki_per_K_s", "kd_s_per_K", "smooth_time_s", "max_delta_K"}) {
+    const double* value = detail::find_constant(*this, std::string("heater.") + gain);
+    if (!problem && value != nullptr && *value < 0.0)
+      problem = std::string("heater.") + gain + " is negative, expected 0 or more";
+  }
+  if (!problem && has_heater() && !(has_current() && has_thermal()))
+    problem = "there is a heater block and not both of current and thermal: expected all three";
   if (!problem && has_servo() && !axis) problem = "there is a servo block and no axis block: expected both";
   if (own && !problem)
     for (const PlantConstant& constant : own->constants)
