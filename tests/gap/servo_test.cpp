@@ -257,3 +257,92 @@ TEST_CASE("where the current is recorded it is the input, whatever the gains are
   REQUIRE(open.gap.size() == diagnosis.gap.size());
   for (std::size_t i = 0; i < open.gap.size(); ++i) CHECK(open.gap[i].before == diagnosis.gap[i].before);
 }
+
+namespace {
+
+/// The same with the current measured, and not commanded: an output.
+Recording measured(Recording recording, std::uint64_t seed) {
+  test::Noise noise(seed);
+  Eigen::VectorXd current = recording.column("drive_A");
+  for (double& one : current) one += 0.004 * noise();
+  recording.remove("drive_A");
+  recording.set("current_A", current);
+  return recording;
+}
+
+/// A joint whose bearing damps it under a servo without damping: its motion tells the product of gain and torque constant.
+const Gains& proportional() {
+  static const Gains gains{0.03, 0.0, 0.0};
+  return gains;
+}
+Joint damped() {
+  Joint joint;
+  joint.viscous = 0.015;
+  return joint;
+}
+
+Diagnosis diagnosed_by_effort(const Joint& joint, const Gains& servo, bool has_effort) {
+  Model model = model_with(proportional());
+  model.axis->viscous_Nms_per_rad = 0.015;
+  model.uncertainty["axis.inertia_kgm2"] = 0.01;  // weighed: else motion tells the ratio of the two alone
+  Options options;
+  options.effects_at_once = 1;
+  const auto recorded = [&](int rows, std::uint64_t seed) {
+    return has_effort ? measured(record(joint, servo, rows, seed, true), seed + 7)
+                      : record(joint, servo, rows, seed);
+  };
+  return diagnose(model, {recorded(1500, 3)}, {recorded(800, 8)}, options);
+}
+
+}  // namespace
+
+TEST_CASE("a measured effort is an output of a joint under a servo") {
+  const Diagnosis sound = diagnosed_by_effort(damped(), proportional(), true);
+  INFO(sound.reason);
+  CHECK(test::holds(sound));
+  CHECK(sound.cause.empty());
+  REQUIRE(sound.gap.size() == 3);
+  CHECK(std::count_if(sound.gap.begin(), sound.gap.end(), [](const GapScore& one) {
+          return to_string(one.signal) == "current_A" && one.unit == "A";
+        }) == 1);
+  for (const GapScore& gap : sound.gap) CHECK(gap.before < 1.15 * gap.noise_floor);
+}
+
+TEST_CASE("a wrong gain and a wrong torque constant move a joint alike, and its effort tells them apart") {
+  Joint strong = damped();
+  strong.torque_constant *= 1.2;
+  Gains stiff = proportional();
+  stiff.kp *= 1.2;
+  for (const bool of_drive : {true, false}) {
+    CAPTURE(of_drive);
+    const std::string cause = of_drive ? "calibration.torque_constant" : "calibration.kp",
+                      other = of_drive ? "calibration.kp" : "calibration.torque_constant";
+    const Joint joint = of_drive ? strong : damped();
+    const Gains servo = of_drive ? proportional() : stiff;
+    const Diagnosis motion = diagnosed_by_effort(joint, servo, false);
+    INFO("motion alone: " << motion.reason);
+    CHECK(named_or_listed(motion, "calibration.kp"));  // whichever it is
+    const Diagnosis both = diagnosed_by_effort(joint, servo, true);
+    INFO("with the effort: " << both.reason);
+    CHECK(named(both, cause) != nullptr);
+    CHECK_FALSE(named_or_listed(both, other));
+    CHECK(both.augmented.get(of_drive ? "torque_constant_Nm_per_A" : "kp_A_per_deg") ==
+          Approx(1.2 * (of_drive ? 0.2 : 0.03)).epsilon(0.04));
+    if (of_drive) continue;
+    REQUIRE_FALSE(both.where.empty());
+    CHECK(both.where.front().signal == Signal::current_A);
+    CHECK(both.where.front().submodel == Submodel::mechanical_drive);
+  }
+}
+
+TEST_CASE("friction is named and placed by the effort beside the motion") {
+  Joint rubbing = damped();
+  rubbing.coulomb_Nm = 0.03;
+  const Diagnosis found = diagnosed_by_effort(rubbing, proportional(), true);
+  INFO(found.reason);
+  const Cause* coulomb = named(found, "coulomb_friction");
+  REQUIRE(coulomb != nullptr);
+  CHECK(coulomb->parameters.front().value == Approx(0.03).epsilon(0.05));
+  REQUIRE_FALSE(found.where.empty());
+  CHECK(found.where.front().submodel == Submodel::mechanical_friction);
+}

@@ -224,6 +224,10 @@ std::string next_text(const std::string& file, const std::vector<ListedColumn>& 
     missing +=
         "No column looks like what drives the joint: expected a current, a voltage, a duty or a target "
         "(--column drive_A=HEADER, voltage_V=HEADER or target_deg=HEADER).\n";
+  if (moves && proposes(columns, "drive_A") &&
+      (proposes(columns, "target_deg") || proposes(columns, "target_dps")))
+    missing +=
+        "With a servo in the model, a measured effort may be compared instead of driving it: --column current_A=HEADER:UNIT.\n";
   if (proposes(columns, "target_C")) missing += "The model needs the heater's loop: a block \"heater\".\n";
   if (!moves && !warms)
     missing +=

@@ -27,7 +27,7 @@ class ActuatorPlant : public Plant {
 public:
   const std::vector<Signal>& signals(const Segment& segment) const override {
     static const std::vector<Signal> bench{Signal::current_A, Signal::motor_C, Signal::power_param},
-        axis{Signal::angle_deg, Signal::rate_dps};
+        axis{Signal::angle_deg, Signal::rate_dps, Signal::current_A};
     return segment.axis ? axis : bench;
   }
 

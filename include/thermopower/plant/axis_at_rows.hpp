@@ -127,8 +127,10 @@ public:
     for (const RunSpan& run : inputs_.runs) {
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         const double t_s = inputs_.t_s[i] - inputs_.t_s[run.begin];
-        const AxisDrive<double> drive = inputs_.closed_loop ? rollout.drive(rollout.servo_A(i, run), i, t_s)
-                                                            : rollout.drive(i, run, i, t_s);
+        const AxisDrive<double> drive = inputs_.effort_is_output
+                                            ? rollout.driven_by(held_effort_A(i, run), i, t_s)
+                                        : inputs_.closed_loop ? rollout.drive(rollout.servo_A(i, run), i, t_s)
+                                                              : rollout.drive(i, run, i, t_s);
         const double drive_Nm = drive.torque_Nm;
         const auto now = rollout.step().torques({angle[i], rate[i], 0.0, 0.0}, t_s, drive);
         // A transition that the noise of the rate hides is as good as none.
@@ -164,6 +166,7 @@ public:
 
   /// From command to torque in s, as the model's effects delay it.
   double delay_s() const {
+    if (inputs_.effort_is_output) return 0.0;  // what flows has come
     const Instance<double> instance(model_, {}, {}, catalogue_);
     return (instance.axis_structure.delayed ? instance.axis_structure.delay_s : 0.0) +
            (inputs_.closed_loop ? instance.servo.delay_s : 0.0);
@@ -174,7 +177,8 @@ public:
     std::vector<std::size_t> list;
     const std::vector<CalibratedConstant> all = model_.calibrated();
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const bool acts = all[k].block == "axis" || (all[k].block == "servo" && inputs_.closed_loop);
+      const bool acts = all[k].block == "axis" ||
+                        (all[k].block == "servo" && inputs_.closed_loop && !inputs_.effort_is_output);
       if (all[k].has_slack && acts) list.push_back(k);
     }
     return list;
@@ -190,6 +194,20 @@ public:
     result.motion_Nm = (result.motion_Nm - down.motion_Nm) * (0.5 / step);
     result.drive_Nm = (result.drive_Nm - down.drive_Nm) * (0.5 / step);
     return result;
+  }
+
+  /// The current that the servo makes flow by the measured motion, where the effort is an output. A
+  /// @param factors  by which the constants are multiplied, as evaluate() has them
+  Eigen::VectorXd servo_current_A(const std::vector<double>& factors = {}) const {
+    const Instance<double> instance(model_, factors, {}, catalogue_);
+    const AxisRollout<double> rollout(instance, inputs_);
+    const double late_s =
+        instance.servo.delay_s + (instance.axis_structure.delayed ? instance.axis_structure.delay_s : 0.0);
+    Eigen::VectorXd current(inputs_.rows());
+    for (const RunSpan& run : inputs_.runs)
+      for (Eigen::Index i = run.begin; i < run.end; ++i)
+        current[i] = rollout.measured_servo_A(i, run, late_s);
+    return current;
   }
 
   Eigen::VectorXd angle;      ///< true one by the model's readings, rad, without holes
@@ -208,14 +226,25 @@ public:
   const Model& model() const { return model_; }
   /// The column that commands the axis; of a closed loop, what the servo makes of its target.
   std::string command_name() const {
+    if (inputs_.effort_is_output) return "current_A";
     return inputs_.closed_loop ? "servo_A" : model_.axis->voltage_driven() ? "voltage_V" : "drive_A";
   }
   /// Its values.
   const Eigen::VectorXd& command() const {
+    if (inputs_.effort_is_output) return inputs_.drive_A;
     return inputs_.closed_loop ? inputs_.servo_A : plant::command(inputs_, model_.axis->voltage_driven());
   }
 
 private:
+  /// Mean of the measured current until the next row, where the servo changes it in between.
+  double held_effort_A(Eigen::Index i, const RunSpan& run) const {
+    const double here_A = inputs_.drive_A[i];
+    if (i + 1 >= run.end) return here_A;
+    const double between =
+        plant::moving_target_share(servo_gains(model_).period_s, inputs_.t_s[i + 1] - inputs_.t_s[i]);
+    return here_A + between * (inputs_.drive_A[i + 1] - here_A);
+  }
+
   /// Share of the time around a row, half an interval each way, in which the rate is positive; it is straight
   /// between rows.
   double forward_share(Eigen::Index i, const RunSpan& run) const {

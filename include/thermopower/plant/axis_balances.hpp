@@ -320,6 +320,65 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
   return b;
 }
 
+/// The measured effort against what the servo makes of its target and of the measured motion: A.
+inline Balance effort_balance(const std::shared_ptr<const AxisAtRows>& a) {
+  const Inputs& in = a->inputs();
+  const auto servo_A = std::make_shared<const Eigen::VectorXd>(a->servo_current_A());
+  Balance b;
+  b.quantity = Quantity::missing_current;
+  b.unit = "A";
+  b.signal = Signal::current_A;
+  b.instrument = Submodel::sensing_current;
+  b.otherwise = Submodel::mechanical_drive;
+  b.given = "Given the measured motion and the target";
+  b.form = BalanceForm::algebraic;
+  b.rows = a->rows();
+  b.measured = in.of(Signal::current_A);
+  b.state = in.drive_A;
+  b.flow_sampled = *servo_A;
+  b.noise_from = b.measured - *servo_A;
+  const Model& model = a->model();
+  const std::vector<CalibratedConstant> calibrated = model.calibrated();
+  const auto by_constant = [a, &model](std::size_t constant) {
+    constexpr double step = 1e-4;  // of the logarithm
+    return Eigen::VectorXd(
+        (a->servo_current_A(model.moved(constant, step)) - a->servo_current_A(model.moved(constant, -step))) *
+        (0.5 / step));
+  };
+  const auto add = [&](SubmodelName submodel, const std::string& variable, const std::string& words,
+                       std::function<Eigen::MatrixXd()> columns) {
+    b.freedoms.push_back({std::move(submodel), variable, words, [columns](double) {
+                            return directions_of(
+                                columns(), [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
+                          }});
+  };
+  add(Submodel::sensing_current, "", "the same offset at every current, none included",
+      [n = in.rows()] { return Eigen::MatrixXd(Eigen::VectorXd::Ones(n)); });
+  for (std::size_t k = 0; k < calibrated.size(); ++k) {
+    if (calibrated[k].block != "servo" || !calibrated[k].has_slack) continue;
+    b.constants.push_back({calibrated[k].id, [by_constant, k] { return flow_sampled(by_constant(k)); }});
+    add(Submodel::mechanical_drive, "servo_A", "another gain " + calibrated[k].id + " of the servo",
+        [by_constant, k] { return Eigen::MatrixXd(by_constant(k)); });
+  }
+  add(Submodel::mechanical_drive, "servo_A", "a current that is not in proportion to what the servo asks for",
+      [servo_A] { return Eigen::MatrixXd(scaled(hats(servo_A->cwiseAbs(), 6), *servo_A)); });
+  add(Submodel::mechanical_drive, "servo_A_per_s", "a current that comes after the servo asks for it",
+      [a, servo_A] {
+        Eigen::VectorXd slope = Eigen::VectorXd::Zero(servo_A->size());
+        const BalanceRows& rows = *a->rows();
+        for (const RunSpan& run : rows.runs)
+          for (Eigen::Index i = run.begin + 1; i < run.end; ++i)
+            slope[i] = ((*servo_A)[i] - (*servo_A)[i - 1]) / (rows.t_s[i] - rows.t_s[i - 1]);
+        return Eigen::MatrixXd(slope);
+      });
+  b.variables = {
+      {"servo_A", "A", *servo_A},
+      {"servo_A_per_s", "A/s", *servo_A, OrderingVariable::Kind::derivative},
+      {"rate_dps", "deg/s", a->rate * deg_per_rad, OrderingVariable::Kind::sampled, Signal::rate_dps},
+      {"t_s", "s", in.t_s}};
+  return b;
+}
+
 /// The angle against the rate, two instruments that must agree: deg/s.
 inline Balance instrument_balance(const AxisAtRows& a) {
   const Eigen::Index n = a.rate.size();
@@ -390,6 +449,14 @@ inline std::vector<BalanceSource> axis_balances(const Model& model, const Catalo
                     return torque_balance(
                         std::make_shared<const AxisAtRows>(model, catalogue, inputs, offsets), *shared);
                   }});
+  if (inputs.effort_is_output)
+    list.push_back({Quantity::missing_current,
+                    Signal::current_A,
+                    {},
+                    [&model, &catalogue, &inputs](const ReadingOffsets& offsets) {
+                      return effort_balance(
+                          std::make_shared<const AxisAtRows>(model, catalogue, inputs, offsets));
+                    }});
   return list;
 }
 

@@ -67,6 +67,9 @@ public:
     }
   }
 
+  /// The current that flows at the row that window() handed on last, where the effort is an output; else NaN. A
+  const Scalar& effort_A() const { return effort_A_; }
+
   /// The drive at a row, from a command of the run (of none where that lies before it).
   /// @param commanded  row of the command
   AxisDrive<Scalar> drive(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
@@ -80,12 +83,7 @@ public:
 
   /// The drive at a row under a command in A; of a motor at a voltage, the current at standstill.
   AxisDrive<Scalar> drive(const Scalar& command_A, Eigen::Index row, double t_s) const {
-    DriveTerms<Scalar> terms;
-    terms.t_s = t_s;
-    terms.motor_C = inputs_.covariate_motor_C.size() > 0 ? inputs_.covariate_motor_C[row] : missing;
-    terms.drive_A = command_A;
-    terms.torque_constant_Nm_per_A = instance_.torque_constant_Nm_per_A;
-    for (const auto& effect : instance_.drive) effect(terms);
+    const DriveTerms<Scalar> terms = drive_terms(command_A, row, t_s);
     const double external_Nm = inputs_.torque_Nm.size() > 0 ? inputs_.torque_Nm[row] : 0.0;
     AxisDrive<Scalar> drive{Scalar(terms.torque_constant_Nm_per_A * terms.drive_A), terms.motor_C,
                             external_Nm};
@@ -95,28 +93,42 @@ public:
     return drive;
   }
 
+  /// The drive at a row under a measured current: what the drive's effects do to a current is in it.
+  AxisDrive<Scalar> driven_by(double measured_A, Eigen::Index row, double t_s) const {
+    AxisDrive<Scalar> all = drive(constant<Scalar>(measured_A), row, t_s);
+    all.torque_Nm = drive_terms(constant<Scalar>(measured_A), row, t_s).torque_constant_Nm_per_A * measured_A;
+    return all;
+  }
+
+  /// The current that flows under a command, after the drive's effects: what an ammeter shows. A
+  Scalar current_A(const Scalar& command_A, Eigen::Index row, double t_s) const {
+    return drive_terms(command_A, row, t_s).drive_A;
+  }
+
+  /// The current that the servo's command by the measured motion makes flow when a row is read, its delay included. A
+  /// @param late_s  of the servo's commands
+  double measured_servo_A(Eigen::Index row, const RunSpan& run, double late_s) const {
+    const double then_s = inputs_.t_s[row] - late_s;
+    Eigen::Index at = row;
+    while (at > run.begin && inputs_.t_s[at] > then_s) --at;
+    const double here_A = measured_sample_A(at, at, run);
+    const double length_s = at + 1 < run.end ? inputs_.t_s[at + 1] - inputs_.t_s[at] : 0.0,
+                 past_s = then_s - inputs_.t_s[at];
+    const bool samples_between = instance_.servo.period_s < several_samples * length_s;
+    const double part = samples_between && past_s > 0.0 ? past_s / length_s : 0.0;
+    const double command_A =
+        part > 0.0 ? here_A + part * (measured_sample_A(at + 1, at + 1, run) - here_A) : here_A;
+    return value_of(current_A(constant<Scalar>(command_A), row, inputs_.t_s[row] - inputs_.t_s[run.begin]));
+  }
+
   /// The servo's command by the motion measured around a row, without its delay.
   double servo_A(Eigen::Index row, const RunSpan& run) const {
-    const auto& shape = instance_.axis_structure;
-    const LateTarget<double> late(inputs_, run, shape.target_delayed ? value_of(shape.target_delay_s) : 0.0,
-                                  instance_.servo.period_s);
-    const bool integrates = shape.target_delayed && std::abs(value_of(instance_.servo.integral)) > 0.0;
-    const auto at = [&](Eigen::Index i) {
-      const double part = i > row ? 1.0 : 0.0;
-      const auto [angle_deg, rate_dps] = seen(i, run, inputs_.seen_deg[i], inputs_.seen_dps[i]);
-      double accumulated = inputs_.servo_integral[std::min(i + 1, run.end - 1)];
-      if (integrates)
-        accumulated -= late.missing_integral(
-            instance_.servo.position ? inputs_.target_deg : inputs_.target_dps, std::min(i, run.end - 1));
-      return value_of(instance_.servo.command_A(angle_deg, rate_dps, late(inputs_.target_deg, row, part),
-                                                late(inputs_.target_dps, row, part),
-                                                constant<Scalar>(accumulated)));
-    };
+    const auto at = [&](Eigen::Index i) { return measured_sample_A(row, i, run); };
     if (row + 1 >= run.end) return at(row);
     const double from_s = inputs_.t_s[row] - inputs_.t_s[run.begin],
                  to_s = inputs_.t_s[row + 1] - inputs_.t_s[run.begin], period_s = instance_.servo.period_s;
     // Of several samples in an interval the mean; of none the one before.
-    if (period_s < 0.7 * (to_s - from_s)) return 0.5 * (at(row) + at(row + 1));
+    if (period_s < several_samples * (to_s - from_s)) return 0.5 * (at(row) + at(row + 1));
     const long sample = std::max(0L, first_sample(to_s, period_s) - 1);
     while (row > run.begin &&
            inputs_.t_s[row] - inputs_.t_s[run.begin] > (static_cast<double>(sample) + 0.5) * period_s)
@@ -128,6 +140,35 @@ public:
   const AxisStep<Scalar>& step() const { return step_; }
 
 private:
+  /// Share of an interval between rows below which a servo's period leaves room for several samples.
+  static constexpr double several_samples = 0.7;
+
+  DriveTerms<Scalar> drive_terms(const Scalar& command_A, Eigen::Index row, double t_s) const {
+    DriveTerms<Scalar> terms;
+    terms.t_s = t_s;
+    terms.motor_C = inputs_.covariate_motor_C.size() > 0 ? inputs_.covariate_motor_C[row] : missing;
+    terms.drive_A = command_A;
+    terms.torque_constant_Nm_per_A = instance_.torque_constant_Nm_per_A;
+    for (const auto& effect : instance_.drive) effect(terms);
+    return terms;
+  }
+
+  /// The servo's command by the motion measured at row `i`, which is `row` or the next one, as the target of `row` goes on.
+  double measured_sample_A(Eigen::Index row, Eigen::Index i, const RunSpan& run) const {
+    const auto& shape = instance_.axis_structure;
+    const LateTarget<double> late(inputs_, run, shape.target_delayed ? value_of(shape.target_delay_s) : 0.0,
+                                  instance_.servo.period_s);
+    const double part = i > row ? 1.0 : 0.0;
+    const auto [angle_deg, rate_dps] = seen(i, run, inputs_.seen_deg[i], inputs_.seen_dps[i]);
+    double accumulated = inputs_.servo_integral[std::min(i + 1, run.end - 1)];
+    if (shape.target_delayed && std::abs(value_of(instance_.servo.integral)) > 0.0)
+      accumulated -= late.missing_integral(instance_.servo.position ? inputs_.target_deg : inputs_.target_dps,
+                                           std::min(i, run.end - 1));
+    return value_of(instance_.servo.command_A(angle_deg, rate_dps, late(inputs_.target_deg, row, part),
+                                              late(inputs_.target_dps, row, part),
+                                              constant<Scalar>(accumulated)));
+  }
+
   /// True angle in deg and rate in deg/s behind readings at a row.
   std::pair<Scalar, Scalar> seen(Eigen::Index row, const RunSpan& run, double angle_deg,
                                  double rate_dps) const {
@@ -180,6 +221,10 @@ private:
     for (Eigen::Index row = begin; row < end; ++row) {
       const double t_s = inputs_.t_s[row] - start_s;
       const auto [angle_deg, rate_dps] = sense();
+      if (inputs_.effort_is_output) {
+        servo.arrive(row, t_s, sense);
+        effort_A_ = current_A(servo.command_A(), row, t_s);
+      }
       sink(row, read(t_s, angle_deg, rate_dps));
       if (row + 1 < run.end)
         servo.interval(row, t_s, inputs_.t_s[row + 1] - start_s, sense,
@@ -242,6 +287,7 @@ private:
   const Instance<Scalar>& instance_;
   const Inputs& inputs_;
   AxisStep<Scalar> step_;
+  mutable Scalar effort_A_ = constant<Scalar>(missing);  ///< at the row that was handed on last
 };
 
 /// When a run under way is known well enough to be judged: states that nobody measures are about what the motion makes of them,

@@ -87,26 +87,27 @@ struct Inputs {
   Eigen::VectorXd t_s;        ///< stamps of the rows, strictly increasing in a run
   std::vector<RunSpan> runs;  ///< rows between which time passes
   // Held inputs and covariates by row; empty where not recorded. Holes hold the value before them.
-  Eigen::VectorXd power_param;              ///< POWER, 0..255
-  Eigen::VectorXd drive_A;                  ///< commanded current of the axis
-  Eigen::VectorXd voltage_V;                ///< at a brushed motor that drives the axis
-  Eigen::VectorXd torque_Nm;                ///< external torque on the driven inertia
-  Eigen::VectorXd heat_W;                   ///< into the body, in the place of the winding's
-  bool closed_loop = false;                 ///< the command is not recorded: a servo makes it of its target
-  Eigen::VectorXd target_deg;               ///< of the servo
-  Eigen::VectorXd target_dps;               ///< of the servo
-  bool target_moves = false;                ///< targets go straight from row to row; else they hold
-  double target_lead = 0.0;                 ///< rows by which moving targets are ahead of that
-  Eigen::VectorXd seen_deg;                 ///< measured angle without holes, of a closed loop; else empty
-  Eigen::VectorXd seen_dps;                 ///< measured rate without holes, of a closed loop; else empty
-  Eigen::VectorXd servo_A;                  ///< of a closed loop: what the servo makes of the measured motion
-  Eigen::VectorXd servo_integral;           ///< of a closed loop: the servo's integral before each row
-  Eigen::VectorXd target_C;                 ///< of the heater's loop
-  bool heater_closed = false;               ///< the duty is not recorded: a loop makes it of `target_C`
-  Eigen::VectorXd supply_V;                 ///< supply voltage
-  Eigen::VectorXd ambient_C;                ///< air temperature
-  Eigen::VectorXd airspeed_mps;             ///< of the air past the motor
-  Eigen::VectorXd neighbour_C;              ///< temperature of what is mounted next to it
+  Eigen::VectorXd power_param;     ///< POWER, 0..255
+  Eigen::VectorXd drive_A;         ///< commanded current of the axis
+  Eigen::VectorXd voltage_V;       ///< at a brushed motor that drives the axis
+  Eigen::VectorXd torque_Nm;       ///< external torque on the driven inertia
+  Eigen::VectorXd heat_W;          ///< into the body, in the place of the winding's
+  bool closed_loop = false;        ///< the command is not recorded: a servo makes it of its target
+  Eigen::VectorXd target_deg;      ///< of the servo
+  Eigen::VectorXd target_dps;      ///< of the servo
+  bool target_moves = false;       ///< targets go straight from row to row; else they hold
+  double target_lead = 0.0;        ///< rows by which moving targets are ahead of that
+  Eigen::VectorXd seen_deg;        ///< measured angle without holes, of a closed loop; else empty
+  Eigen::VectorXd seen_dps;        ///< measured rate without holes, of a closed loop; else empty
+  bool effort_is_output = false;   ///< of a closed loop: `current_A` is compared with what the servo asks for
+  Eigen::VectorXd servo_A;         ///< of a closed loop: what the servo makes of the measured motion
+  Eigen::VectorXd servo_integral;  ///< of a closed loop: the servo's integral before each row
+  Eigen::VectorXd target_C;        ///< of the heater's loop
+  bool heater_closed = false;      ///< the duty is not recorded: a loop makes it of `target_C`
+  Eigen::VectorXd supply_V;        ///< supply voltage
+  Eigen::VectorXd ambient_C;       ///< air temperature
+  Eigen::VectorXd airspeed_mps;    ///< of the air past the motor
+  Eigen::VectorXd neighbour_C;     ///< temperature of what is mounted next to it
   Eigen::VectorXd covariate_rate_dps;       ///< rotation as an input of the bench models
   Eigen::VectorXd covariate_motor_C;        ///< motor temperature as an input of the axis
   Eigen::VectorXd held_current_A;           ///< current as an input of the thermal model
@@ -150,7 +151,9 @@ struct Inputs {
     return std::isfinite(value) || between_samples[at].size() == 0 ? value : between_samples[at][row];
   }
   /// Whether temperature or current is judged.
-  bool bench() const { return !own && (judged(Signal::current_A) || judged(Signal::motor_C)); }
+  bool bench() const {
+    return !own && ((judged(Signal::current_A) && !effort_is_output) || judged(Signal::motor_C));
+  }
   /// Whether angle or rate is judged.
   bool axis() const { return !own && (judged(Signal::angle_deg) || judged(Signal::rate_dps)); }
 };

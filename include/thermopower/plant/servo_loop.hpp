@@ -225,6 +225,14 @@ public:
   /// The command that acts.
   const Scalar& command_A() const { return pending_.front().command_A; }
 
+  /// Takes the sample that is due at a row, and lets the command act that is: what command_A() is from then on.
+  /// @param sense  as interval() has it
+  template <class Sense>
+  void arrive(Eigen::Index row, double at_s, Sense&& sense) {
+    if (samples_until(at_s, gains_.period_s) > next_) sample(row, 0.0, sense());
+    while (pending_.size() > 1 && value_of(pending_[1].from_s) <= at_s) pending_.erase(pending_.begin());
+  }
+
   /// Goes through the interval from a row to the next one.
   /// @param sense    the motion as the servo sees it: a pair of angle in deg and rate in deg/s
   /// @param advance  moves the axis: `advance(t_s, length_s)` under command_A()
@@ -248,16 +256,7 @@ public:
           advance(value_of(now_s), Scalar(sample_s - now_s));
           now_s = constant<Scalar>(sample_s);
         }
-        const std::pair<Scalar, Scalar> seen = sense();
-        const double part = std::clamp((sample_s - from_s) / (to_s - from_s), 0.0, 1.0);
-        with_targets(row, part, [&](const auto& target_deg, const auto& target_dps) {
-          gains_.integrate(accumulated_, seen.first, seen.second, target_deg, target_dps);
-          pending_.push_back(
-              {delay_s_ + sample_s,
-               gains_.after(pending_.back().command_A, gains_.command_A(seen.first, seen.second, target_deg,
-                                                                        target_dps, accumulated_))});
-        });
-        ++next_;
+        sample(row, std::clamp((sample_s - from_s) / (to_s - from_s), 0.0, 1.0), sense());
         continue;
       }
       break;
@@ -270,6 +269,18 @@ private:
   struct Pending {
     Scalar from_s, command_A;
   };
+
+  /// Takes the next sample, a part of the way from a row to the next one. @param seen  angle in deg and rate in deg/s
+  void sample(Eigen::Index row, double part, const std::pair<Scalar, Scalar>& seen) {
+    const double sample_s = static_cast<double>(next_++) * gains_.period_s;
+    with_targets(row, part, [&](const auto& target_deg, const auto& target_dps) {
+      gains_.integrate(accumulated_, seen.first, seen.second, target_deg, target_dps);
+      pending_.push_back(
+          {delay_s_ + sample_s,
+           gains_.after(pending_.back().command_A,
+                        gains_.command_A(seen.first, seen.second, target_deg, target_dps, accumulated_))});
+    });
+  }
 
   /// Hands on the targets, in degrees and in degrees per second, that the servo has a part of the way from a row to the next.
   template <class Use>

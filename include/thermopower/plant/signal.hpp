@@ -16,7 +16,7 @@ namespace thermopower::plant {
 /// (`static_cast<Signal>(i)`); what they are called, and their units, then stands in its list, and
 /// `to_string` and `unit_of` do not apply.
 enum class Signal : int {
-  current_A = 0,    ///< motor current
+  current_A = 0,    ///< motor current; of an axis under a servo, its measured effort
   motor_C = 1,      ///< what the motor's thermometer shows
   angle_deg = 2,    ///< angle of the axis
   rate_dps = 3,     ///< its rate

@@ -37,6 +37,7 @@ inline const VariableWords* words_of(const std::string& name) {
       {"rate_rad_per_s", "angular rate", "rad/s"},
       {"acceleration_rad_per_s2", "angular acceleration", "rad/s2"},
       {"drive_A_per_s", "change of the drive current", "A/s"},
+      {"current_A_per_s", "change of the motor current", "A/s"},
       {"servo_A", "current that the servo asks for", "A"},
       {"servo_A_per_s", "change of the current that the servo asks for", "A/s"},
       {"voltage_V_per_s", "change of the voltage", "V/s"},

@@ -209,6 +209,11 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
       else lack("angle_deg", "angle_deg");
       if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
       if (!commanded) {
+        if (recording.has("current_A") && !model.has_current() && !model.has_thermal()) {
+          inputs.effort_is_output = true;
+          inputs.drive_A = take("current_A");
+          measure(Signal::current_A);
+        }
         plant::follow_profile(model, inputs);
         close_loop(model, inputs);
       }

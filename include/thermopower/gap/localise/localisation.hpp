@@ -90,6 +90,7 @@ public:
       std::vector<std::string> known{"drive_A",   "rate_dps",  "angle_deg", "motor_C",
                                      "voltage_V", "torque_Nm", "heat_W"};
       if (axis_.closed_loop) known.insert(known.end(), {"target_deg", "target_dps"});
+      if (axis_.effort_is_output) known.emplace_back("current_A");
       append(plant::axis_balances(model, catalogue, axis_, covariates(part, known)));
     }
     if (!model.has_current() && !model.has_thermal()) return;

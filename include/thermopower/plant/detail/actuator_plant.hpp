@@ -74,7 +74,7 @@ public:
         carried_(at_rest()) {}
 
   void roll(const Segment& segment, const Start& start, Readings& out) override {
-    out.reset(segment.begin, segment.end, segment.axis ? 2 : 3, directions_);
+    out.reset(segment.begin, segment.end, 3, directions_);
     const std::array<Scalar, 2> from{start_scalar(start, 0), start_scalar(start, 1)};
     if (segment.axis) roll_axis(segment, from, out);
     else roll_bench(segment, from, out);
@@ -220,6 +220,7 @@ private:
                    [&](Eigen::Index row, const AxisReadings<Scalar>& read) {
                      out.put(row, 0, read.angle_deg);
                      out.put(row, 1, read.rate_dps);
+                     if (inputs.effort_is_output) out.put(row, 2, rollout.effort_A());
                    });
     // What is carried on depends on the parameters, and on the starts of other segments, which stay out.
     forget(state.twist_rad, starts_from_);
