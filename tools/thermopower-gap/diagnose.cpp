@@ -55,11 +55,11 @@ int diagnose(const Arguments& arguments) {
         held_out.push_back(std::move(last));
       }
     }
-    progress.stage("diagnosing");
+    options.at_stage = [&progress](const char* words) { progress.stage(words); };
     diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
     diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
     io::put_remedies_in_force(diagnosis, how);
-    progress.stage("writing");
+    progress.stage("writing the results");
     effects = gap::catalogue_of(model, catalogue).list();
     // A fleet compares its reports byte by byte, wherever its logs lie.
     if (!arguments.of_fleet) made_of = provenance_of(arguments);

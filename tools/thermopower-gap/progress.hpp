@@ -47,7 +47,7 @@ private:
     if (shown) std::fprintf(stderr, "\r\033[K");
   }
 
-  std::atomic<const char*> stage_{"reading"};
+  std::atomic<const char*> stage_{"reading the files"};
   std::mutex mutex_;
   std::condition_variable wake_;
   bool done_ = false;

@@ -222,7 +222,7 @@ struct Remaining {
 
 /// How long a stage took. Not part of a report: equal input gives equal reports.
 struct StageTiming {
-  std::string stage;     ///< `data gate`, `where`, `which` or `how far`
+  std::string stage;     ///< in the words of Options::at_stage
   double seconds = 0.0;  ///< wall-clock time
 };
 

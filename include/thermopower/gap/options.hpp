@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ class Stopped : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
 };
+
+/// Is told when a stage of a diagnosis begins, in words for who waits: "weighing causes". The words live as long as the program.
+using StageListener = std::function<void(const char*)>;
 
 /// Options of a diagnosis.
 struct Options {
@@ -31,6 +35,7 @@ struct Options {
   unsigned seed = 1;     ///< of the bootstrap; equal seeds give equal reports
   /// Where another thread sets it, the diagnosis soon ends by throwing Stopped. None: nobody may.
   const std::atomic<bool>* stop = nullptr;
+  StageListener at_stage;  ///< is told of each stage; none: nobody is
 
   /// @throws InvalidInput naming the first option that is out of its range
   void validate() const {

@@ -43,15 +43,18 @@ public:
   }
 
   Diagnosis run(const std::vector<Recording>& train, const std::vector<Recording>& held_out) {
+    stage("checking the recordings");
     gather(train, held_out);
-    stage("data gate");
-    if (!enough_data(result_, model_, train_inputs_, held_out_inputs_, options_.horizon_s))
+    if (!enough_data(result_, model_, train_inputs_, held_out_inputs_, options_.horizon_s)) {
+      end_stage();
       return std::move(result_);
+    }
+    stage("finding where simulation and recordings part");
     Localisation found = localise(model_, train_recordings_, {}, catalogue_);
     if (!model_.own) add_occurrences(model_, train_recordings_, held_out_recordings_, {}, catalogue_, found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
-    stage("where");
+    stage("weighing causes");
     if (model_.axis && !model_.own) {
       effort_.emplace(model_, catalogue_, train_inputs_, held_out_inputs_, options_.without);
       result_.loop = to_string(effort_->loop().kind);
@@ -117,9 +120,9 @@ private:
   }
 
   Diagnosis report_on(Attempt& attempt, const Answer& answer) {
-    stage("which");
+    stage("scoring on held-out data");
     report(attempt, answer);
-    stage("how far");
+    end_stage();
     return std::move(result_);
   }
 
@@ -440,9 +443,17 @@ private:
     draw_effect(model_, std::move(simulated), catalogue_, result_.missing_quantities);
   }
 
-  void stage(const char* name) {
+  /// Begins a stage, and ends the one before.
+  void stage(const char* words) {
+    end_stage();
+    stage_ = words;
+    if (options_.at_stage) options_.at_stage(words);
+  }
+
+  void end_stage() {
     const auto now = std::chrono::steady_clock::now();
-    result_.timings.push_back({name, std::chrono::duration<double>(now - since_).count()});
+    if (stage_ != nullptr)
+      result_.timings.push_back({stage_, std::chrono::duration<double>(now - since_).count()});
     since_ = now;
   }
 
@@ -456,6 +467,7 @@ private:
   std::vector<RowsAsGiven> held_out_rows_;
   std::optional<EffortProblem> effort_;  ///< of an axis
   bool effort_leads_ = false;            ///< the effort names the cause, and the motion must not contradict
+  const char* stage_ = nullptr;          ///< under way; null: none has begun
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };
 
