@@ -230,7 +230,9 @@ public:
   template <class Sense>
   void arrive(Eigen::Index row, double at_s, Sense&& sense) {
     if (samples_until(at_s, gains_.period_s) > next_) sample(row, 0.0, sense());
-    while (pending_.size() > 1 && value_of(pending_[1].from_s) <= at_s) pending_.erase(pending_.begin());
+    const double rounding_s = 1e-6 * gains_.period_s;  // stamps have few digits
+    while (pending_.size() > 1 && value_of(pending_[1].from_s) <= at_s + rounding_s)
+      pending_.erase(pending_.begin());
   }
 
   /// Goes through the interval from a row to the next one.
