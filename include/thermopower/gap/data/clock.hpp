@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/neighbour_motion.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/recording.hpp>
 
@@ -91,15 +92,13 @@ inline std::optional<ClockStamps> clock_of(const Eigen::VectorXd& t_s, const Run
 
 /// How far a reading lies from the cubic through two neighbours on either side, if these are its instants.
 inline double off_its_neighbours(const std::array<double, 5>& at_s, const std::array<double, 5>& values) {
-  double between = 0.0;
-  for (std::size_t i = 0; i < 5; ++i) {
+  std::array<double, 4> where{}, what{};
+  for (std::size_t i = 0, k = 0; i < 5; ++i) {
     if (i == 2) continue;
-    double weight = 1.0;
-    for (std::size_t k = 0; k < 5; ++k)
-      if (k != i && k != 2) weight *= (at_s[2] - at_s[k]) / (at_s[i] - at_s[k]);
-    between += weight * values[i];
+    where[k] = at_s[i] - at_s[2];
+    what[k++] = values[i];
   }
-  return values[2] - between;
+  return values[2] - polynomial_at_zero(where, what);
 }
 
 /// Collects how much nearer to their neighbours readings lie at one list of instants than at another.

@@ -111,17 +111,9 @@ private:
     if (blocks_.size() < limit.least_blocks) return {};
     const std::size_t parts = std::min(limit.parts, blocks_.size());
     std::vector<NormalEquations> sums(parts, NormalEquations(terms));
-    NormalEquations all(terms);
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      sums[i * parts / blocks_.size()].add(blocks_[i], 1.0);
-      all.add(blocks_[i], 1.0);
-    }
-    std::vector<double> without;
-    for (const NormalEquations& one : sums) {
-      NormalEquations rest = all;
-      rest.add(one, -1.0);
-      without.push_back(share_of(rest, used));
-    }
+    for (std::size_t i = 0; i < blocks_.size(); ++i) sums[i * parts / blocks_.size()].add(blocks_[i], 1.0);
+    const auto [all, without] =
+        left_out(sums, [used](const NormalEquations& some) { return share_of(some, used); });
     const double error = jackknife_error(without);
     if (!std::isfinite(error)) return {};
     return {share_of(all, used), error};

@@ -104,14 +104,7 @@ public:
       blocks[i * limit.blocks / rows_.size()].add(instruments, regressors, rows_[i].more_dps);
       squares += rows_[i].others[0] * rows_[i].others[0] / static_cast<double>(rows_.size());
     }
-    NormalEquations all(terms);
-    for (const NormalEquations& one : blocks) all.add(one, 1.0);
-    std::vector<double> without;
-    for (const NormalEquations& one : blocks) {
-      NormalEquations rest = all;
-      rest.add(one, -1.0);
-      without.push_back(rest.solve()[0]);
-    }
+    const auto [all, without] = left_out(blocks, [](const NormalEquations& sums) { return sums.solve()[0]; });
     const Eigen::VectorXd coefficients = all.solve();
     const double lag = coefficients[0], standard_error = jackknife_error(without);
     const bool sure =

@@ -9,6 +9,10 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <utility>
+#include <vector>
+
 namespace thermopower::gap::engine {
 
 /// Sums of a linear regression over its rows. Sums of parts of the rows add up, and can be taken out again.
@@ -66,5 +70,21 @@ private:
   Eigen::MatrixXd square_;   // of the terms, by the terms
   Eigen::VectorXd product_;  // of the terms and the response
 };
+
+/// All sums of some blocks, and what is made of them without one block after another: for jackknife_error().
+template <class Of>
+std::pair<NormalEquations, std::vector<double>> left_out(const std::vector<NormalEquations>& blocks,
+                                                         Of&& of) {
+  assert(!blocks.empty());
+  NormalEquations all = blocks.front();
+  for (std::size_t i = 1; i < blocks.size(); ++i) all.add(blocks[i], 1.0);
+  std::vector<double> without;
+  for (const NormalEquations& one : blocks) {
+    NormalEquations rest = all;
+    rest.add(one, -1.0);
+    without.push_back(of(rest));
+  }
+  return {std::move(all), std::move(without)};
+}
 
 }  // namespace thermopower::gap::engine

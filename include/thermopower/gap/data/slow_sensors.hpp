@@ -3,9 +3,11 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/neighbour_motion.hpp>
 #include <thermopower/gap/data/robust.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -200,13 +202,9 @@ inline Eigen::VectorXd between_samples(const Eigen::VectorXd& t_s, const std::ve
   for_each_in_order<4>(values, runs, [&](const Eigen::Index* rows) {
     if (t_s[rows[3]] - t_s[rows[0]] > 3.0 * longest_s) return;
     for (Eigen::Index i = rows[1] + 1; i < rows[2]; ++i) {
-      result[i] = 0.0;
-      for (int k = 0; k < 4; ++k) {  // Lagrange
-        double weight = 1.0;
-        for (int other = 0; other < 4; ++other)
-          if (other != k) weight *= (t_s[i] - t_s[rows[other]]) / (t_s[rows[k]] - t_s[rows[other]]);
-        result[i] += weight * values[rows[k]];
-      }
+      std::array<double, 4> where{}, what{};
+      for (std::size_t k = 0; k < 4; ++k) where[k] = t_s[rows[k]] - t_s[i], what[k] = values[rows[k]];
+      result[i] = polynomial_at_zero(where, what);
     }
   });
   return result;
