@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/command_noise.hpp>
 #include <thermopower/gap/data/motion_regression.hpp>
+#include <thermopower/gap/rule.hpp>
 #include <thermopower/plant/samples.hpp>
 
 #include <Eigen/Core>
@@ -81,7 +82,7 @@ public:
   /// Standard deviation of the noise in the command, in its unit: what it is rough by from row to row and no motion
   /// follows. 0 where there is none, where it moves no simulation over the horizon, or where nobody can tell.
   double noise() const {
-    if (!noise_) noise_ = find_noise();
+    if (!noise_) noise_ = holds(Rule::command_noise) ? find_noise() : 0.0;
     return *noise_;
   }
 

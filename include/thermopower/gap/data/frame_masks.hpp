@@ -114,7 +114,7 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
   constexpr FrameThresholds frames;
   constexpr Eigen::Index around = frames.around;
   RowMask mask;
-  if (outputs.empty()) return mask;
+  if (outputs.empty() || !holds(Rule::repeated_frames)) return mask;
   const Eigen::Index rows = outputs.front()->size();
   mask.assign(static_cast<std::size_t>(rows), 0);
   // 0: all outputs differ from the row before; 1: some are the same; 2: all are.
@@ -285,7 +285,7 @@ inline RowMask lost_frames(const std::vector<const Eigen::VectorXd*>& recorded,
                            const std::vector<double>& defaults, const std::vector<RunSpan>& runs) {
   constexpr MaskThresholds limit;
   RowMask mask;
-  if (recorded.size() < 2) return mask;
+  if (recorded.size() < 2 || !holds(Rule::lost_frames)) return mask;
   const Eigen::Index rows = recorded.front()->size();
   mask.assign(static_cast<std::size_t>(rows), 0);
   std::vector<double> least;

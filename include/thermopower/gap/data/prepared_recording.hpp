@@ -165,9 +165,9 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   // A row that is lost stops no clock: it is read before the runs are cut there.
   read_the_clock(list);
   RowMask starts(unknown_.size(), 0);
-  check_stamps(model, list, believed_.runs, starts);
+  if (holds(Rule::pauses)) check_stamps(model, list, believed_.runs, starts);
   believed_.runs = cut_at(believed_.runs, starts, true);
-  if (moves_ && believed_.has("angle_deg")) {
+  if (holds(Rule::resets) && moves_ && believed_.has("angle_deg")) {
     RowMask elsewhere(unknown_.size(), 0);
     check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.find("rate_dps"),
                  believed_.runs, elsewhere);
@@ -178,7 +178,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
                        !recorded.has("drive_A") && !recorded.has("heat_W") && model.has_thermal();
   mask_outputs(recorded, list);
   fill_inputs(model, recorded, list);
-  if (moves_) mark_under_way(believed_);
+  if (moves_ && holds(Rule::under_way)) mark_under_way(believed_);
   interval_s_ = plant::median_interval_s(believed_.t_s, believed_.spans(), 0.0);
   if (as_recorded) {
     std::vector<Finding> all = list.take();
@@ -227,7 +227,9 @@ inline void PreparedRecording::read_the_clock(FindingList& list) {
 inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingList& list) {
   for (Column& column : believed_.columns) {
     // A current holds because the power does; or, as what heats, because it is held.
-    if (!is_output(column.name) || (column.name == "current_A" && own_ == nullptr)) continue;
+    if (!is_output(column.name) || (column.name == "current_A" && own_ == nullptr) ||
+        !holds(Rule::slow_sensors))
+      continue;
     const std::optional<SlowColumn> held = held_between_updates(column.values, believed_.runs);
     const std::optional<SlowColumn> straight =
         held ? std::nullopt : straight_between_updates(believed_.t_s, column.values, believed_.runs);
@@ -305,7 +307,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
              std::to_string(recorded.rows() - present) + " of " + std::to_string(recorded.rows()) +
                  " samples are missing (" + short_number(100.0 * share) + " %)");
   }
-  if (is_temperature(name)) {
+  if (is_temperature(name) && holds(Rule::impossible)) {
     std::vector<double> list_of = finite_samples(values);
     const double typical = median_of(list_of);
     constexpr PossibleTemperature possible;

@@ -71,6 +71,7 @@ public:
   /// that overshoots, does neither.
   RowMask bursts() {
     RowMask mask = empty();
+    if (!holds(Rule::bursts)) return mask;
     const double least =
         std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_, limit_.quanta * quantum_});
     std::vector<double> list = finite_samples(values_);
@@ -109,6 +110,7 @@ public:
   /// of its time, since the range ends there.
   RowMask frozen() {
     RowMask mask = empty();
+    if (!holds(Rule::frozen)) return mask;
     double stood_at = missing;  // at the end of the run before
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       std::vector<Eigen::Index> rows = finite_rows(runs_[r]);

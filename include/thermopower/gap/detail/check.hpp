@@ -74,13 +74,14 @@ inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::
 inline void check_units(const Model& model, const CheckedRecordings& checked,
                         const std::vector<std::vector<RunSpan>>& spans, const Catalogue& catalogue,
                         double most_power, std::vector<Finding>& findings) {
-  if (model.own) return;  // nobody but its author knows the units of its columns
+  // Nobody but its author knows the units of the columns of a plant of one's own.
+  if (model.own || !holds(Rule::units)) return;
   UnitChoice units(model, catalogue, most_power);
   std::size_t at = 0;
   for (const auto* all : {&checked.train, &checked.held_out})
     for (const PreparedRecording& one : *all) units.add(one, spans[at++]);
   units.find(findings);
-  if (!units.is_as_expected()) return;
+  if (!units.is_as_expected() || !holds(Rule::detached_sensors)) return;
   check_motion_sensors(model, checked.train, [&](std::vector<Finding> found) {
     for (Finding& finding : found) findings.push_back(std::move(finding));
   });
@@ -96,7 +97,7 @@ inline void check_units(const Model& model, const CheckedRecordings& checked,
 /// Lets the target of a servo go on between the rows where the training recordings say that it did.
 inline void read_targets_between_rows(const Model& model, CheckedRecordings& checked,
                                       const Catalogue& catalogue, std::vector<Finding>& findings) {
-  if (!model.has_axis() || !model.has_servo()) return;
+  if (!model.has_axis() || !model.has_servo() || !holds(Rule::target_between_rows)) return;
   TargetBetweenRows between(model, catalogue);
   const auto is_closed = [](const PreparedRecording& one) {
     return one.inputs().axis() && one.inputs().closed_loop && !one.inputs().target_moves;
@@ -133,7 +134,7 @@ inline const Eigen::VectorXd& command_of(const Model& model, const PreparedRecor
 /// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show which, by
 /// what the motion makes of earlier commands in the training recordings. Comes before what is said of the command between the rows.
 inline void read_what_drove_before(const Model& model, CheckedRecordings& checked) {
-  if (!model.has_axis()) return;
+  if (!model.has_axis() || !holds(Rule::driven_before)) return;
   DrivenBefore before;
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) before.add(one.inputs(), command_of(model, one));
@@ -148,7 +149,7 @@ inline void read_what_drove_before(const Model& model, CheckedRecordings& checke
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
 inline void read_between_rows(const Model& model, CheckedRecordings& checked, double horizon_s,
                               std::vector<Finding>& findings) {
-  if (!model.has_axis()) return;
+  if (!model.has_axis() || !holds(Rule::command_between_rows)) return;
   CommandBetweenRows between(horizon_s);
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) between.add(one.inputs(), command_of(model, one));
@@ -192,7 +193,9 @@ inline void read_current_noise(const Model& model, CheckedRecordings& checked,
                                std::vector<Finding>& findings) {
   // The other laws' heat goes with the current itself, of which noise is no part on average.
   const bool goes_with_square = std::holds_alternative<OhmicCurrentModel>(model.current);
-  if (model.own || !model.has_thermal() || !goes_with_square || model.has_axis()) return;
+  if (model.own || !model.has_thermal() || !goes_with_square || model.has_axis() ||
+      !holds(Rule::current_noise))
+    return;
   const auto is_heated = [](const PreparedRecording& one) {
     const Inputs& inputs = one.inputs();
     return inputs.judged(Signal::motor_C) && inputs.heat_W.size() == 0 &&
@@ -224,7 +227,7 @@ inline void read_current_noise(const Model& model, CheckedRecordings& checked,
 /// all recordings.
 inline void read_when_switched(const Model& model, CheckedRecordings& checked, const Catalogue& catalogue,
                                std::vector<Finding>& findings) {
-  if (model.own || !model.has_thermal()) return;
+  if (model.own || !model.has_thermal() || !holds(Rule::heat_between_rows)) return;
   const auto heat_of = [&](const PreparedRecording& one) {
     const Inputs& inputs = one.inputs();
     return plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs)).heat_W;

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/experiment.hpp>
+#include <thermopower/gap/rule.hpp>
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
@@ -63,7 +64,7 @@ inline bool stands_still(const Eigen::VectorXd& values) {
 /// @param as_recorded  it is said, and nothing is left out
 inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checked, bool as_recorded,
                                    std::vector<Finding>& findings) {
-  if (model.own) return;
+  if (model.own || !holds(Rule::dead_columns)) return;
   constexpr Signal signals[] = {Signal::current_A, Signal::angle_deg, Signal::rate_dps};
   double largest[signal_count] = {};
   bool lives[signal_count] = {};  // in some recording
