@@ -173,6 +173,24 @@ TEST_CASE("a few odd samples do not hide a quantum") {
   CHECK(quantum_of(values) == Approx(0.1).epsilon(1e-6));
 }
 
+TEST_CASE("a coarse reading that a logger averages keeps its quantum") {
+  // 33 to 34 degC in steps of 0.1, read 97 times for each row; the rows in which it steps are means of two levels.
+  Eigen::VectorXd values(1200);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    double sum = 0.0;
+    for (int k = 0; k < 97; ++k) {
+      const double at = static_cast<double>(i) + k / 97.0;
+      sum += 0.1 * std::round(10.0 * (33.5 + 0.5 * std::sin(0.005 * at)));
+    }
+    values[i] = std::round(1e8 * sum / 97.0) / 1e8;
+  }
+  CHECK(quantum_of(values) == Approx(0.1).epsilon(1e-3));
+  // Values of a sensor without steps, held for five rows each, have no quantum.
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    values[i] = 33.5 + 0.5 * std::sin(0.7 * std::pow(static_cast<double>(i / 5), 1.3));
+  CHECK(quantum_of(values) == 0.0);
+}
+
 TEST_CASE(
     "an error that ramps and jumps back at blows is no noise where the measured motion is smooth between them") {
   // A load with free play: the simulated rate knows nothing of the blows, each of which reverses what was gained since the last.

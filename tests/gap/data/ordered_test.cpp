@@ -84,7 +84,7 @@ TEST_CASE("a list sorted from below reads as the sorted one, wherever it is read
     }
 }
 
-TEST_CASE("a quantum is the one that sorting all steps finds") {
+TEST_CASE("a step that repeats is the one that sorting all steps finds") {
   Generator random(2);
   int found = 0, none = 0;
   for (const std::size_t size : {5u, 30u, 400u, 3000u})
@@ -92,7 +92,7 @@ TEST_CASE("a quantum is the one that sorting all steps finds") {
       for (const double missing_share : {0.0, 0.1}) {
         const std::vector<double> list = column(size, quantum, missing_share, random);
         const double expected = quantum_by_sorting(list);
-        CHECK(quantum_of(vector_of(list)) == expected);
+        CHECK(repeated_step(vector_of(list)) == expected);
         (expected > 0.0 ? found : none) += 1;
       }
   CHECK(found > 10);

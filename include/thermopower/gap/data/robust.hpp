@@ -101,11 +101,38 @@ inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSp
   return median_of(list) / (normal_median * gain);
 }
 
-/// Quantum of a channel: the smallest step between neighbours that occurs again and again (in at least a
-/// hundredth of all steps), so that a few odd samples do not hide it. 0 where there is none: values that hardly
-/// ever differ by the same amount.
+/// The grid on which most samples of a channel stand: the least distance of values that recur, where all of these lie
+/// a whole number of such distances apart. A logger that averages a coarse reading passes from one level to the next by values of
+/// its own, so that few neighbours differ by the quantum. 0 where there is none.
+inline double grid_of_levels(const Eigen::VectorXd& values) {
+  constexpr double most = 0.5, on_grid = 0.02;
+  constexpr std::size_t recurs = 3, few_levels = 4;
+  std::vector<double> sorted;
+  constexpr Eigen::Index enough = 20000;
+  for (const double value : values.head(std::min(values.size(), enough)))
+    if (std::isfinite(value)) sorted.push_back(value);
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<double> levels;
+  std::size_t held = 0;
+  for (std::size_t from = 0, to = 0; from < sorted.size(); from = to) {
+    while (to < sorted.size() && sorted[to] == sorted[from]) ++to;
+    if (to - from >= recurs) levels.push_back(sorted[from]), held += to - from;
+  }
+  if (levels.size() < few_levels || static_cast<double>(held) < most * static_cast<double>(sorted.size()))
+    return 0.0;
+  double least = levels[1] - levels[0];
+  for (std::size_t i = 2; i < levels.size(); ++i) least = std::min(least, levels[i] - levels[i - 1]);
+  for (const double level : levels) {
+    const double steps = (level - levels[0]) / least;
+    if (std::abs(steps - std::round(steps)) > on_grid) return 0.0;
+  }
+  return least;
+}
+
+/// The smallest step between neighbours that occurs again and again (in at least a hundredth of all steps), so that a few odd samples
+/// do not hide it. 0 where there is none: values that hardly ever differ by the same amount.
 /// @param same  share by which steps of one quantum differ, because few digits of them were logged
-inline double quantum_of(const Eigen::VectorXd& values, double same = 1e-3) {
+inline double repeated_step(const Eigen::VectorXd& values, double same = 1e-3) {
   constexpr double often = 0.01, odd = 0.1;
   constexpr std::size_t enough = 20000;
   std::vector<double> steps;
@@ -131,6 +158,12 @@ inline double quantum_of(const Eigen::VectorXd& values, double same = 1e-3) {
     from = to;
   }
   return 0.0;
+}
+
+/// Quantum of a channel: grid_of_levels(), or else repeated_step(); 0 where there is none.
+inline double quantum_of(const Eigen::VectorXd& values) {
+  const double grid = grid_of_levels(values);
+  return grid > 0.0 ? grid : repeated_step(values);
 }
 
 }  // namespace thermopower::gap::engine

@@ -33,7 +33,7 @@ public:
          double scale, double quantum, double position_step)
       : runs_(runs), traits_(traits), quantum_(quantum), scale_(scale), position_step_(position_step) {
     constexpr double few_digits = 0.01;  // 360/16384 deg with four decimals comes as 0.0219 and 0.0220
-    const double coarsest = std::max(quantum, quantum_of(values, few_digits));
+    const double coarsest = std::max(quantum, repeated_step(values, few_digits));
     motion_ = MotionSpikes(values, traits.t_s, runs, coarsest);
     median_confirmed_ = confirmed(values, limit_.spike_scales * scale_);
     motion_confirmed_ = confirmed(values, limit_.spike_scales * motion_.noise());
