@@ -281,6 +281,27 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "an axis that stands at its least angle until its first step is at rest, however unevenly it then runs") {
+  // A motor at rest is stepped to 1600 deg/s; its encoder has no noise, and the rows of the log come unevenly.
+  Recording r = axis();
+  test::Noise noise(5);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows()), t_s(r.rows());
+  const double begin_s = 0.1, rise_s = 0.05, top_dps = 1600.0, encoder_deg = 0.02;
+  double at_s = 0.0;
+  for (Eigen::Index i = 0; i < r.rows(); ++i, at_s += 0.0055 + 0.0005 * noise()) {
+    const double since_s = std::max(0.0, at_s - begin_s), risen = std::exp(-since_s / rise_s);
+    t_s[i] = at_s;
+    rate[i] = top_dps * (1.0 - risen);
+    angle[i] = 330.0 + encoder_deg * std::round(top_dps * (since_s - rise_s * (1.0 - risen)) / encoder_deg);
+  }
+  r.t_s = t_s;
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK_FALSE(found(prepared, FindingKind::clipped_samples, "angle_deg", FindingAction::masked));
+}
+
+TEST_CASE(
     "a noisy angle that stands still at its largest value is cut off there, though the axis rests out of range") {
   Recording r = axis();
   test::Noise noise(11);

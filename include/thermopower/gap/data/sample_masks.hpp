@@ -203,8 +203,23 @@ private:
     if (!is_witnessed && stands_still && !is_driven_at(one.value)) return false;
     // One sample tells little: just at the end of its range a sensor is still right. Where noise of
     // many steps shows everywhere else, it would show there, though the axis rests out of range.
-    const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still;
+    const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still && !rests_at(one.value);
     return 2 * denied(one.value) >= one.count || noise_would_show;
+  }
+
+  /// Whether the rate says that the axis comes to rest, and starts again, wherever the column keeps this value: it is exactly 0
+  /// at most of these rows, and small before and after. The rate of a motion that goes on out of range is large there.
+  bool rests_at(double value) const {
+    if (traits_.at_rest == nullptr) return false;
+    std::ptrdiff_t still = 0;
+    for (const RunSpan& run : runs_)
+      for (Eigen::Index row = run.begin; row < run.end; ++row) {
+        if (values_[row] != value) continue;
+        for (Eigen::Index at = std::max(run.begin, row - 1); at < std::min(run.end, row + 2); ++at)
+          if (!resting(at)) return false;
+        still += (*traits_.at_rest)[row] == 0.0 ? 1 : -1;
+      }
+    return still > 0;
   }
 
   /// Whether a good part of the samples at an extreme follow on each other.
