@@ -87,9 +87,10 @@ protected:
   }
 
   void regime(Sentence& sentence, const Json& regime) {
-    const std::string range = std::string("most for (.+?) ") + number + " to " + number;
+    const std::string range = std::string("most for (.+?) ") + number + "(?: to " + number + ")?";
     const int said = sentence.take(range, [&](const std::smatch& m) {
-      need(!regime.is_null() && is(m[2], regime["from"]) && is(m[3], regime["to"]), "another regime", m[0]);
+      need(!regime.is_null() && is(m[2], regime["from"]) && is(m[3].matched ? m[3] : m[2], regime["to"]),
+           "another regime", m[0]);
       named_in_words(m[1]);
     });
     need(said == (regime.is_null() ? 0 : 1), "a regime that is not told", sentence.text());
@@ -114,21 +115,27 @@ protected:
   }
 
   void parameters(Sentence& sentence, const Json& list, const std::string& assigned) {
-    for (const auto& [name, one] : list.items()) {
-      const std::string begin = "(?:^|[ ,:\n])" + literal(name) + assigned + number;
-      const auto is_nothing = [&](const std::smatch& m) {
-        need(is(m[1], one["value"]), "another parameter", m[0]);
-      };
-      const auto is_interval = [&](const std::smatch& m) {
-        need(is(m[1], one["value"]) && is(m[2], one["ci95"][0]) && is(m[3], one["ci95"][1]),
-             "another parameter", m[0]);
-      };
-      const int said =
-          one.contains("told")
-              ? sentence.take(begin + "(?: [^\\[(,]+)? \\(not told by these data\\)", is_nothing)
-              : sentence.take(begin + "(?: [^\\[,]+)? \\[" + number + ", " + number + "\\]", is_interval);
-      need(said == 1, "a parameter that is not told once", name);
-    }
+    for (const auto& [name, one] : list.items())
+      parameter(sentence, name, one, "(?:^|[ ,:\n])" + literal(name) + assigned, "");
+  }
+
+  /// A value with its interval, between two patterns.
+  void parameter(Sentence& sentence, const std::string& name, const Json& one, const std::string& before,
+                 const std::string& after) {
+    const auto is_nothing = [&](const std::smatch& m) {
+      need(is(m[1], one["value"]), "another parameter", m[0]);
+    };
+    const auto is_interval = [&](const std::smatch& m) {
+      need(is(m[1], one["value"]) && is(m[2], one["ci95"][0]) && is(m[3], one["ci95"][1]),
+           "another parameter", m[0]);
+    };
+    const std::string begin = before + number;
+    const int said =
+        one.contains("told")
+            ? sentence.take(begin + "(?: [^\\[(,]+)? \\(not told by these data\\)" + after, is_nothing)
+            : sentence.take(begin + "(?: [^\\[,]+)? \\[" + number + ", " + number + "\\]" + after,
+                            is_interval);
+    need(said == 1, "a parameter that is not told once", name);
   }
 
   static bool takes_gap_away(const Json& place) { return !(place["share"].get<double>() < 0.005); }

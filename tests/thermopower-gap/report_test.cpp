@@ -574,6 +574,20 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("the summary gives a curve by its two ends") {
+  Diagnosis d = example();
+  d.cause[0].effect = "unknown.load(angle_deg)";
+  d.cause[0].parameters = {{"Nm_1", -0.26, {-0.32, -0.2}, "N m"},
+                           {"Nm_2", -0.33, {-0.4, -0.3}, "N m"},
+                           {"Nm_3", -0.62, {-0.7, -0.5}, "N m"}};
+  CHECK_THAT(
+      std::regex_replace(io::summary(d), std::regex("\n +"), " "),
+      ContainsSubstring(
+          "unknown.load(angle_deg) (61 %): -0.260 N m [-0.320, -0.200] at the low end of the range seen, "
+          "-0.620 N m [-0.700, -0.500] at the high end") &&
+          !ContainsSubstring("-0.330"));
+}
+
 TEST_CASE("the summary says that a parameter ended on a bound, as its interval tells nothing there") {
   Diagnosis d = example();
   CHECK_THAT(io::summary(d), !ContainsSubstring("on its bound"));

@@ -88,7 +88,13 @@ private:
             need(is_share(m[1], cause["probability"]), "another probability", text);
           });
       need(said == 1, "another cause", text);
-      parameters(sentence, cause["parameters"], " ");
+      if (of(cause["effect"]).rfind("unknown.", 0) != 0)
+        return parameters(sentence, cause["parameters"], " ");
+      for (const auto& [name, one] : cause["parameters"].items()) {
+        const std::string place = name.substr(name.rfind('_'));
+        if (place == "_1") parameter(sentence, name, one, ": ", " at the low end of the range seen");
+        if (place == "_10") parameter(sentence, name, one, ", ", " at the high end");
+      }
     } else if (label == "with") {
       const int said =
           sentence.take(std::string("^(\\S+) ") + number + " -> " + number + " \\(known to " + share + "\\)$",

@@ -94,6 +94,11 @@ std::string interval_text(double low, double high) {
   return "[" + readable(low, digits) + ", " + readable(high, digits) + "]";
 }
 
+std::string range_text(double low, double high) {
+  const std::string from = readable(low), to = readable(high);
+  return from == to ? from : from + " to " + to;
+}
+
 std::string percent_text(double share) {
   if (!std::isfinite(share)) return "?";
   char text[16];

@@ -26,6 +26,8 @@ std::string known_to(const gap::ParameterEstimate& parameter);
 
 /// @brief An interval in brackets, with as many digits as tell its ends apart, three at least.
 std::string interval_text(double low, double high);
+/// A range of a variable, "12.0 to 40.0"; one number where both ends read alike.
+std::string range_text(double low, double high);
 
 /// @brief A share in per cent, plain text: "83 %", ">99 %".
 std::string percent_text(double share);

@@ -31,7 +31,7 @@ std::string regime_html(const Regime& regime) {
   const VariableText variable = variable_text(regime.variable);
   const std::string text =
       variable.in_words ? escaped(variable.text) : "<code>" + breakable(variable.text) + "</code>";
-  return text + " " + readable(regime.from) + " to " + readable(regime.to) +
+  return text + " " + range_text(regime.from, regime.to) +
          (variable.unit.empty() ? "" : "\u00a0" + variable.unit);
 }
 

@@ -5,6 +5,7 @@
 #include <thermopower/io/sentences.hpp>
 #include <thermopower/plant/variable_words.hpp>
 #include <thermopower/plant/calibration_id.hpp>
+#include <thermopower/plant/curve_id.hpp>
 
 #include "html_text.hpp"
 #include "wrapped.hpp"
@@ -58,8 +59,8 @@ std::string occurrences_text(const std::vector<Occurrence>& list) {
 
 std::string regime_text(const Regime& regime) {
   const plant::VariableWords* const words = plant::words_of(regime.variable);
-  return plant::in_words(regime.variable) + " " + readable(regime.from) + " to " +
-         plain_unit(readable(regime.to), words != nullptr ? words->unit : "");
+  return plant::in_words(regime.variable) + " " +
+         plain_unit(range_text(regime.from, regime.to), words != nullptr ? words->unit : "");
 }
 
 std::string shrunk_text(const GapScore& gap) {
@@ -85,6 +86,25 @@ std::string gap_table(const Diagnosis& diagnosis) {
   return out;
 }
 
+/// The parameters of a cause with their intervals.
+std::string sizes_of(const std::vector<ParameterEstimate>& parameters) {
+  std::string text;
+  for (const ParameterEstimate& parameter : parameters)
+    text += (text.empty() ? ": " : ", ") + parameter.name + " " +
+            plain_unit(readable(parameter.value), parameter.unit) + " " + known_to(parameter);
+  return text;
+}
+
+/// The first and the last value of a curve: ten values with their intervals are for the page and the report.
+std::string ends_of_curve(const std::vector<ParameterEstimate>& values) {
+  if (values.empty()) return "";
+  const auto end = [](const ParameterEstimate& one) {
+    return plain_unit(readable(one.value), one.unit) + " " + known_to(one);
+  };
+  return ": " + end(values.front()) + " at the low end of the range seen, " + end(values.back()) +
+         " at the high end";
+}
+
 }  // namespace
 
 std::string summary(const Diagnosis& diagnosis, const std::vector<EffectInfo>& effects) {
@@ -108,12 +128,9 @@ std::string summary(const Diagnosis& diagnosis, const std::vector<EffectInfo>& e
   }
   first = true;
   for (const auto& cause : diagnosis.cause) {
-    std::string text = cause.effect + " (" + percent_text(cause.probability) + ")";
-    for (const auto& parameter : cause.parameters) {
-      text += (&parameter == &cause.parameters.front() ? ": " : ", ") + parameter.name + " " +
-              plain_unit(readable(parameter.value), parameter.unit) + " " + known_to(parameter);
-    }
-    out += line(first ? "which" : "", text);
+    out += line(first ? "which" : "", cause.effect + " (" + percent_text(cause.probability) + ")" +
+                                          (plant::is_curve(cause.effect) ? ends_of_curve(cause.parameters)
+                                                                         : sizes_of(cause.parameters)));
     first = false;
   }
   for (const auto& constant : diagnosis.constants) {

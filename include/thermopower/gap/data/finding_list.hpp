@@ -7,6 +7,7 @@
 
 #include <cassert>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,13 @@ inline std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
+}
+
+/// A number to two digits, without an exponent where it has up to four places before the point: 240, 0.058.
+inline std::string two_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", value);
+  return short_number(std::strtod(text, nullptr));
 }
 
 /// What is said of several samples, as it is said of one: "lie far from all around them", "lies far from all around it".

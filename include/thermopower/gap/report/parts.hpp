@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
@@ -260,11 +261,9 @@ inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
     for (double error : errors) mean += error, square += error * error;
     mean /= std::max<double>(1.0, static_cast<double>(errors.size()));
     square /= std::max<double>(1.0, static_cast<double>(errors.size()));
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "errors stay alike for about %.2g s; %.0f %% of them is a constant offset of %.2g %s",
-                  alike_s, 100.0 * mean * mean / std::max(square, 1e-30), mean, series.unit.c_str());
-    rest.looks = text;
+    rest.looks = "errors stay alike for about " + two_digits(alike_s) + " s; " +
+                 std::to_string(std::lround(100.0 * mean * mean / std::max(square, 1e-30))) +
+                 " % of them is a constant offset of " + two_digits(mean) + " " + series.unit;
     break;
   }
   return rest;
