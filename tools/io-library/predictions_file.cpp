@@ -145,6 +145,9 @@ Recording with_starts(Recording recording, const Model& model, const std::map<st
     const std::string name = to_string(start.signal);
     const auto given = starts.find(name);
     if (!start.predicted || (recording.has(name) && given == starts.end())) continue;
+    // Windows of a measured angle begin with the rate of its slope, as in a diagnosis: a rate at rest would be none of theirs.
+    if (start.signal == Signal::rate_dps && given == starts.end() && is_measured_throughout(recording))
+      continue;
     Eigen::VectorXd values = recording.has(name) ? recording.column(name)
                                                  : Eigen::VectorXd::Constant(recording.rows(), missing_value);
     for (const RunSpan& run : recording.spans()) {
