@@ -59,23 +59,6 @@ std::vector<Candidate> nothing_friction_and(const Model& model, const char* othe
 
 }  // namespace
 
-TEST_CASE("the price of a constant grows like a square near what is known and like a logarithm far away") {
-  const Prior prior{0.05};
-  CHECK(prior.cost(0.0) == 0.0);
-  CHECK(prior.cost(0.005) == Approx(1.5 * 0.01).epsilon(0.01));
-  const double far = prior.cost(10.0) - prior.cost(5.0);
-  CHECK(far == Approx(3.0 * std::log(4.0)).epsilon(0.001));
-  // Its weight has the gradient of half the cost.
-  for (double at : {0.01, 0.1, 0.7}) {
-    const double step = 1e-6, slope = (prior.cost(at + step) - prior.cost(at - step)) / (2.0 * step);
-    CHECK(prior.weight(at) * at == Approx(0.5 * slope).epsilon(1e-6));
-  }
-  CHECK(Prior{}.cost(3.0) == 0.0);
-  // What decides between explanations prefers one constant that is far off to two that are half as far off.
-  CHECK(prior.price(std::log(1.2)) < 2.0 * prior.price(0.5 * std::log(1.2)));
-  CHECK(prior.price(std::log(1.1)) > 2.0 * prior.price(0.5 * std::log(1.1)));
-}
-
 TEST_CASE("the jackknife of a mean over blocks is its standard error") {
   Noise noise(5);
   std::vector<double> means;
@@ -255,7 +238,7 @@ TEST_CASE(
   CHECK(unmoved / beside_unmoved == Approx(odds).epsilon(1e-3));
   const auto [moved, beside_moved] = judged(-0.2);
   // Moved by four times what is known, it is a further thing that is wrong, besides.
-  CHECK(moved / beside_moved == Approx(odds / (1.0 + 16.0) * std::exp(-0.5 * decision.rarity)).epsilon(1e-3));
+  CHECK(moved / beside_moved == Approx(odds / (1.0 + 16.0) * std::exp(-0.5 * usual_rarity)).epsilon(1e-3));
   // Whoever has measured it gets an answer.
   model.uncertainty["axis.torque_constant_Nm_per_A"] = 0.005;
   CHECK(judged(0.0).first > 0.95);

@@ -36,7 +36,7 @@ inline bool spares_the_constants(const Candidate& set, const Candidate& part, co
 /// Multiple of the noise above which a part of a set leaves room for a further cause. It is lower where the part reaches
 /// the noise only with constants far off.
 inline double least_room_beside(const Candidate& part, const Model& model) {
-  const bool far_off = price_of_constants(part, model) > decision.rarity + decision.dear_constants;
+  const bool far_off = price_of_constants(part, model) > usual_rarity + decision.dear_constants;
   return far_off ? decision.room_beside_dear_constants : decision.room_for_second;
 }
 

@@ -170,7 +170,7 @@ private:
       for (Eigen::Index k = 0; k < blocks; ++k) density(i, k) = score.block_gain[static_cast<std::size_t>(k)];
       const Explanation& explanation = candidates_[static_cast<std::size_t>(i)].explanation;
       // That a cause is missing is known where one is told: the first one of an explanation is no news.
-      const double news = i == 0 ? 0.0 : explanation.rarity() - decision.rarity;
+      const double news = i == 0 ? 0.0 : explanation.rarity() - usual_rarity;
       prior[i] = -0.5 * news - static_cast<double>(score.parameters.size());
       signatures_.push_back(effort_.train_residual(score.effects) - nothing);
     }

@@ -216,13 +216,6 @@ inline bool scores_alike(const Candidate& candidate, const Candidate& other) {
   return true;
 }
 
-/// Log odds that go with a difference of so many standard errors, by the normal distribution (Page 1977).
-inline double log_odds_of(double standard_errors) {
-  assert(!(standard_errors < 0.0));
-  const double z = std::min(standard_errors, 40.0);
-  return 1.5976 * z + 0.07056 * z * z * z;
-}
-
 /// Whether an effect joined constants that explain everything without it: all of them moved with it, too.
 inline bool does_nothing_more(const Candidate& candidate, const Candidate& constants) {
   if (candidate.explanation.effects.empty()) return false;
@@ -395,13 +388,12 @@ inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
       one.idle = one.idle || (one.explanation.effects.size() > 1 && has_the_same(one, *twin, model));
 }
 
-/// Deviance of Gaussian residuals of unknown variance.
+/// Deviance of residuals, all signals together.
 /// @param correlation  samples of each signal that count as one
 inline double misfit_of(const SignalSums& sums, const std::array<double, signal_count>& correlation) {
   double deviance = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i)
-    if (sums.samples[i] > 0.0)
-      deviance += sums.samples[i] / correlation[i] * std::log(std::max(sums.mean(i), 1e-6));
+    deviance += misfit(sums.samples[i], correlation[i], sums.mean(i));
   return deviance;
 }
 
@@ -429,9 +421,9 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   for (std::size_t i = 0; i < signal_count; ++i)
     samples += candidates.front().train.samples[i] / weight.correlation[i];
   const auto penalty = [&](const Candidate& one) {
-    return cost_of_parameters(one, model, std::log(std::max(samples, 2.0))) +
-           decision.rarity * static_cast<double>(moved_constants(one, model).size()) +
-           one.explanation.rarity() + price_of_constants(one, model);
+    return cost_of_parameters(one, model, price_of_parameter(samples)) +
+           usual_rarity * static_cast<double>(moved_constants(one, model).size()) + one.explanation.rarity() +
+           price_of_constants(one, model);
   };
   mark_idle(candidates);
   const Candidate* best = nullptr;
@@ -488,10 +480,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   for (Candidate& one : candidates) {
     one.probability = 0.0;
     if (!in_the_running(one)) continue;
-    one.against = 0.5 * (one.deviance - least->deviance);
-    const double uncertain = uncertainty(one, *least);
-    if (uncertain > 0.0 && holds(Rule::evidence_bound))
-      one.against = std::min(one.against, log_odds_of((one.deviance - least->deviance) / uncertain));
+    one.against = log_odds(one.deviance - least->deviance,
+                           holds(Rule::evidence_bound) ? uncertainty(one, *least) : 0.0);
   }
   // The cost of parameters is not part of that. A richer explanation that does not fit better beyond doubt stays behind by
   // its cost.
@@ -511,16 +501,15 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
           std::min(better, 2.0 * log_odds_of(std::max(better, 0.0) / std::max(uncertain, 1e-12)));
       richer.against = std::max(richer.against, simpler.against + 0.5 * (extra - std::max(proven, 0.0)));
     }
-  double total = 0.0, first = 1e300;
-  for (const Candidate& one : candidates)
-    if (in_the_running(one)) first = std::min(first, one.against);
-  for (Candidate& one : candidates) {
-    if (!in_the_running(one)) continue;
-    one.against -= first;
-    total += one.probability = std::exp(-one.against);
-  }
-  assert(!(total < 1.0));  // the first has odds of one
-  for (Candidate& one : candidates) one.probability /= total;
+  std::vector<Candidate*> weighed;
+  std::vector<double> against;
+  for (Candidate& one : candidates)
+    if (in_the_running(one)) weighed.push_back(&one), against.push_back(one.against);
+  const double first = *std::min_element(against.begin(), against.end());
+  for (double& one : against) one -= first;
+  const std::vector<double> shares = probabilities(against);
+  for (std::size_t i = 0; i < weighed.size(); ++i)
+    weighed[i]->against = against[i], weighed[i]->probability = shares[i];
 }
 
 /// Change that a candidate makes to the empty explanation's residuals, all signals in one vector.

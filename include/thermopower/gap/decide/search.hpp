@@ -151,7 +151,7 @@ public:
     std::vector<std::size_t> far_off;
     for (const std::size_t index : by_fitness(candidates, 0)) {
       const Candidate& one = candidates[index];
-      if (!one.explanation.effects.empty() && price_of_constants(one, model) > decision.rarity &&
+      if (!one.explanation.effects.empty() && price_of_constants(one, model) > usual_rarity &&
           !(one.train.total() > farthest))
         far_off.push_back(index);
       if (far_off.size() == looked_at) break;

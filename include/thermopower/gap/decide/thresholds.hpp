@@ -11,8 +11,6 @@ namespace thermopower::gap::engine {
 /// holds them.
 struct DecisionThresholds {
   // Evidence
-  /// Twice a log odds, for every cause: they are rare, one in twenty of those looked for.
-  double rarity = 6.0;
   /// Share of the score. A candidate as near to the best as this on every held-out signal is given the best one's fit. With
   /// many rows a smaller difference is still significant, but tells of small errors that every model has.
   double alike_held_out = 0.005;

@@ -168,7 +168,7 @@ public:
       const Candidate& one = attempt_.candidates[place];
       if (one.explanation.effects.size() != 1 || !in_the_running(one) ||
           largest_noise_multiple(one.held_out) > decision.near_floor ||
-          !(price_of_constants(one, posing_.model()) > decision.rarity + decision.dear_constants))
+          !(price_of_constants(one, posing_.model()) > usual_rarity + decision.dear_constants))
         continue;
       if (++found > tried) break;
       for (Promise& set : search_->promising().with_each(attempt_.candidates, place, effects()))

@@ -71,22 +71,17 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
   return price;
 }
 
-/// The price of a parameter where explanations are compared: the logarithm of the samples, twice a log odds.
-///
-/// If a constant of the model does the same (Parameter::told_by_constant), the data tell both together only. The price is
-/// then twice the log odds of the constant's density at its centre against a parameter that may be anywhere in its range.
-/// It is nothing if the constant is known no better than that.
+/// The price of a parameter where explanations are compared, twice a log odds: price_of_parameter(), or price_beside_constant() if a
+/// constant of the model does the same (Parameter::told_by_constant), and the data tell both together only.
 /// @param coordinate  the parameter's
 inline double cost_of_parameter(const plant::Parameter& parameter, const Coordinate& coordinate,
                                 const Model& model, double log_samples) {
   if (!holds(Rule::parsimony)) return 0.0;
   if (parameter.told_by_constant.empty()) return log_samples;
-  for (const CalibratedConstant& constant : model.calibrated()) {
-    if (constant.id != parameter.told_by_constant) continue;
-    const double known_better =
-        (coordinate.upper - coordinate.lower) * Prior{model.uncertainty_of(constant)}.density_at_centre();
-    return std::min(2.0 * std::log(std::max(known_better, 1.0)), log_samples);
-  }
+  for (const CalibratedConstant& constant : model.calibrated())
+    if (constant.id == parameter.told_by_constant)
+      return price_beside_constant(coordinate.upper - coordinate.lower, Prior{model.uncertainty_of(constant)},
+                                   log_samples);
   return log_samples;
 }
 

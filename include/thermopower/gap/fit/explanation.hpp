@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/fit/prior.hpp>
+#include <thermopower/gap/fit/statistical_model.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/plant/plant.hpp>
 #include <thermopower/plant/calibration_id.hpp>

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/fit/prior.hpp>
+#include <thermopower/gap/fit/statistical_model.hpp>
 #include <thermopower/gap/propose/effort_residual.hpp>
 
 #include <Eigen/Cholesky>

@@ -6,11 +6,21 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+/// @file statistical_model.hpp
+/// The statistical model of the diagnosis, stated once, in the order of @ref gap_method: what is known before the data (priors),
+/// what the data say (the likelihood of residuals), what freedom costs, and how far a difference is believed (odds). Every stage that
+/// fits, compares or prints takes these formulas from here.
+
 namespace thermopower::gap::engine {
+
+/// @name Priors
+/// @{
 
 /// The assumed knowledge of a model's constants.
 struct KnownConstants {
@@ -90,5 +100,75 @@ struct CombinedPrior {
     return sum;
   }
 };
+
+/// Twice the log odds against a cause of which nothing else is said (plant::EffectInfo::rarity): one in twenty of those that are
+/// looked for is there.
+inline constexpr double usual_rarity = 6.0;
+
+/// @}
+/// @name Likelihood
+/// @{
+
+/// Deviance of Gaussian residuals of one signal whose variance nobody knows: n / c ln q.
+/// @param samples     n, >= 0
+/// @param correlated  c, how many of them count as one, >= 1
+/// @param mean_square  q, of the residuals in units of the noise; below a millionth no smaller one is better
+inline double misfit(double samples, double correlated, double mean_square) {
+  assert(samples >= 0.0 && correlated > 0.0);
+  constexpr double least = 1e-6;
+  return samples / correlated * std::log(std::max(mean_square, least));
+}
+
+/// @}
+/// @name The price of freedom
+/// @{
+
+/// Twice the log odds that one free parameter costs: the logarithm of the samples that count (Schwarz 1978).
+/// @param samples  that count as one, over all signals of the training data
+inline double price_of_parameter(double samples) {
+  constexpr double least = 2.0;
+  return std::log(std::max(samples, least));
+}
+
+/// The same of a parameter beside a constant of the model that does the same: the log odds of the constant's density at its centre
+/// against a parameter that may be anywhere in its range. It is nothing if the constant is known no better than that.
+/// @param range  of the parameter, in the constant's coordinate
+/// @param of_parameter  price_of_parameter(), which is the most
+inline double price_beside_constant(double range, const Prior& constant, double of_parameter) {
+  return std::min(2.0 * std::log(std::max(range * constant.density_at_centre(), 1.0)), of_parameter);
+}
+
+/// @}
+/// @name Odds
+/// @{
+
+/// Log odds that go with a difference of so many standard errors, by the normal distribution (Page 1977).
+/// @param standard_errors  >= 0; from 40 on they are the same
+inline double log_odds_of(double standard_errors) {
+  assert(!(standard_errors < 0.0));
+  const double z = std::min(standard_errors, 40.0);
+  return 1.5976 * z + 0.07056 * z * z * z;
+}
+
+/// Log odds of one explanation against another: half the difference of their deviances, but no more than its standard error allows.
+/// Every model is wrong, and a model error does not average out as noise does (Vuong 1989).
+/// @param difference      of the deviances, >= 0
+/// @param standard_error  of that difference; 0: none is known
+inline double log_odds(double difference, double standard_error) {
+  const double claimed = 0.5 * difference;
+  return standard_error > 0.0 ? std::min(claimed, log_odds_of(difference / standard_error)) : claimed;
+}
+
+/// Probabilities that go with log odds against the best of them.
+/// @param against  in nats, the least of them 0
+inline std::vector<double> probabilities(const std::vector<double>& against) {
+  std::vector<double> shares;
+  double total = 0.0;
+  for (const double one : against) total += shares.emplace_back(std::exp(-one));
+  for (double& one : shares) one /= total;
+  return shares;
+}
+
+/// @}
 
 }  // namespace thermopower::gap::engine
