@@ -590,6 +590,29 @@ TEST_CASE(
     CHECK(missed.gap[i].noise_floor < followed.gap[i].noise_floor);
 }
 
+TEST_CASE("a noise floor that the best simulation is far below is too high") {
+  Recording recording;
+  recording.name = "at rest";
+  constexpr Eigen::Index rows = 400;
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(rows);
+  recording.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, 0.01 * (rows - 1));
+  for (const char* column : {"drive_A", "angle_deg", "rate_dps"}) recording.set(column, still);
+  const Model model = axis_model();
+  const std::vector<Inputs> inputs{prepare(model, recording)};
+  const std::vector<Segment> segments = cut(inputs, 0.5, plant_of(model));
+  const auto rate = static_cast<std::size_t>(Signal::rate_dps);
+  // What was taken for the noise of the sensor is 1 deg/s, and a simulation is off by less.
+  const auto sigma = thermopower::plant::for_each_signal(1.0);
+  const auto floor_where_off_by = [&](double rms_dps) {
+    Errors errors = errors_of(model, segments, standard_catalogue());
+    for (double& one : errors.of[rate]) one = rms_dps;
+    return floor_of(model, errors, sigma, segments, standard_catalogue(), FirstReadings::as_they_are)[rate];
+  };
+  CHECK(floor_where_off_by(0.05) == Approx(0.05 * floor_known_to));
+  CHECK(floor_where_off_by(50.0) == floor_where_off_by(100.0));
+  CHECK(floor_where_off_by(50.0) >= 1.0);
+}
+
 TEST_CASE("a beginning that bends, as that of a thermometer that lags, is no first reading that is off") {
   constexpr int draws = 40;
   constexpr double noise_C = 0.05;

@@ -17,8 +17,8 @@ namespace thermopower::gap::engine {
 
 /// The limits of the verdict table.
 struct VerdictLimits {
-  /// Multiple of the noise floor up to which the configured model passes: what floors are known to in a few hundred samples.
-  double passes = 1.2;
+  /// Multiple of the noise floor up to which the configured model passes.
+  double passes = floor_known_to;
   /// Multiple of the noise floor up to which a signal counts as near it.
   double near_floor = 1.5;
   /// The most that noise which remembers may come to by chance, as a multiple of the floor: in a few hundred samples.

@@ -276,7 +276,11 @@ inline std::array<double, signal_count> wander_of_starts(const Model& model,
   return rms_between(errors_of(model, segments, catalogue), errors_of(model, others, catalogue));
 }
 
-/// The score of a perfect model if a command may be noisy, too.
+/// Factor to which a floor is known in a few hundred samples.
+inline constexpr double floor_known_to = 1.2;
+
+/// The score of a perfect model if a command may be noisy, too. The best simulation is no better than a perfect one: a floor above
+/// what it scores by more than floors are known to is too high, and comes down to that.
 /// @param errors  of the best simulation  @param sigma  noise of the signals
 /// @param first   what the simulations begin with that it is for
 inline std::array<double, signal_count> floor_of(const Model& best, const Errors& errors,
@@ -289,6 +293,7 @@ inline std::array<double, signal_count> floor_of(const Model& best, const Errors
   for (std::size_t i = 0; i < signal_count; ++i) {
     const double rms = errors.rms(static_cast<Signal>(i));
     floor[i] = with_wander(std::max(floor[i], std::min(carried[i], rms)), wander[i], rms);
+    if (rms > 0.0) floor[i] = std::min(floor[i], floor_known_to * rms);
   }
   return floor;
 }
