@@ -600,9 +600,51 @@ class Twins(unittest.TestCase):
                                      without=[one for one in others if one not in ("cogging", "cable_spring")])
         self.assertEqual([one.effect for one in found.cause], ["late_drive"])
         self.assertAlmostEqual(found.cause[0].parameters.lag_s.value, 0.06, delta=0.003)
-        text, left_out = found.header()
-        self.assertIn("late_drive_lag_s", text)
-        self.assertTrue(any("late_drive: it is written in Python" in one for one in left_out), left_out)
+        text, left_out = found.header()  # its function was traced, so that it is written, too
+        self.assertIn("static float late_Nm_per_s(", text)
+        self.assertFalse(any("late_drive" in one for one in left_out), left_out)
+
+    def test_an_equation_is_traced(self):
+        """It is computed without Python: its function is called while it is traced, and never again."""
+        calls = []
+
+        def hose(p, terms):
+            calls.append(p)
+            bend = terms.angle_rad if terms.angle_rad > -0.2 else np.sqrt(abs(terms.angle_rad)) * 0.5
+            terms.load_Nm -= p.k * bend**3 + 0.01 * p.k * np.tanh(terms.rate_rad_per_s)
+
+        effect = thermopower.Effect("hose", hose, on="axis", parameters=[thermopower.parameter("k", "N m/rad^3", 0.0, 10.0, [1e-3])])
+        self.assertTrue(effect.is_traced)
+        calls.clear()
+        model = dict(AXIS, effects={"hose": {"k": 0.05}})
+        thermopower.predict(model, sweep(0.1), effects=[effect])
+        few = len(calls)
+        calls.clear()
+        thermopower.predict(model, sweep(4.0), effects=[effect])
+        self.assertEqual(len(calls), few)
+
+    def test_what_cannot_be_traced_is_called(self):
+        count = [0]
+
+        def bent(p, terms):
+            terms.load_Nm -= p.k * np.arctan(terms.angle_rad)
+
+        def halved(p, terms):
+            rest, scale = terms.angle_rad, 1.0
+            while abs(rest) > 1.0:
+                rest, scale = rest / 2.0, scale * 2.0
+            terms.load_Nm -= p.k * rest * scale
+
+        def counted(p, terms):
+            count[0] += 1
+            terms.load_Nm -= p.k * count[0]
+
+        given = [thermopower.parameter("k", "N m/rad", 0.0, 10.0, [1e-3])]
+        for act in (bent, halved, counted):
+            effect = thermopower.Effect("x", act, on="axis", parameters=given)
+            self.assertFalse(effect.is_traced, act.__name__)
+        effect = thermopower.Effect("x", halved, on="axis", parameters=given)
+        self.same(AXIS, sweep(2.0), effect, {"k": 0.05}, {"cable_spring": {"Nm_per_rad": 0.05, "centre_rad": 0.0}})
 
     def test_what_cannot_be_is_told(self):
         def nothing(p, terms):

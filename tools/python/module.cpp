@@ -397,7 +397,9 @@ PYBIND11_MODULE(_thermopower, module) {
       .def("series", &Result::series);
   thermopower::python::bind_dual<plant::Dual>(module, "Dual");
   thermopower::python::bind_dual<plant::WideDual>(module, "WideDual");
+  thermopower::python::bind_traced_number(module);
   thermopower::python::bind_added_friction<double>(module, "AddedFriction");
+  thermopower::python::bind_added_friction<plant::Expression>(module, "AddedFrictionOfTracedNumbers");
   thermopower::python::bind_added_friction<plant::Dual>(module, "AddedFrictionOfDuals");
   thermopower::python::bind_added_friction<plant::WideDual>(module, "AddedFrictionOfWideDuals");
   py::class_<gap::Model>(module, "Model")
@@ -420,6 +422,7 @@ PYBIND11_MODULE(_thermopower, module) {
     each.without = std::move(without);
     return fleet(manifest, out, workers, pages, std::move(each), horizon_s);
   });
+  module.def("is_traced", &thermopower::python::is_traced);
   module.def("effects", [] { return io::catalogue_text(gap::standard_catalogue().list()); });
   module.def("normalised", [](const std::string& model) { return io::to_json(model_of(model)); });
   module.def("explain", [](const std::string& code) {

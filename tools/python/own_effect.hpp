@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,13 +20,15 @@
 #include <utility>
 #include <vector>
 
+#include "effect_members.hpp"
+#include "traced_effect.hpp"
+
 /// @file own_effect.hpp
-/// Effects whose equation is a Python function: it is called with plain numbers in simulations, and with numbers that
-/// carry their derivatives in fits. The Python lock is taken for each call.
+/// Effects whose equation is a Python function. It is traced where it can be (traced_effect.hpp), and then computed without Python.
+/// Elsewhere it is called with plain numbers in simulations, and with numbers that carry their derivatives in fits; the Python lock is
+/// taken for each call.
 
 namespace thermopower::python {
-
-namespace py = pybind11;
 
 /// A Python object that may be let go by any thread.
 using Shared = std::shared_ptr<py::object>;
@@ -37,115 +41,6 @@ inline Shared shared(py::object object) {
   });
 }
 
-/// Dry friction that a function adds, which takes effect when it has ended: `terms.add_friction(...)` of it.
-template <class Scalar>
-class AddedFriction {
-public:
-  /// As plant::FrictionTerms has it.
-  void add(const Scalar& forward, const Scalar& backward, const Scalar& transition, const Scalar& tail) {
-    added_.push_back({forward, backward, transition, tail});
-  }
-  /// Hands on what was added. @param terms  receive it
-  void to(plant::FrictionTerms<Scalar>& terms) const {
-    for (const auto& [forward, backward, transition, tail] : added_)
-      terms.add_friction(forward, backward, transition, tail);
-  }
-
-private:
-  std::vector<std::array<Scalar, 4>> added_;
-};
-
-/// Binds it as something that can be called.
-template <class Scalar>
-void bind_added_friction(py::module_& module, const char* name) {
-  using Added = AddedFriction<Scalar>;
-  py::class_<Added, std::shared_ptr<Added>>(module, name)
-      .def("__call__", &Added::add, py::arg("forward_Nm"), py::arg("backward_Nm"),
-           py::arg("transition_rad_per_s"), py::arg("tail") = Scalar(0.0));
-}
-
-/// The members of a hook's terms by their names: `given` are read, those `to_change` are read and written back.
-template <class Scalar, class Visitor>
-void visit(plant::ElectricalTerms<Scalar>& terms, Visitor&& with) {
-  with.given("t_s", terms.t_s), with.given("rate_dps", terms.rate_dps),
-      with.given("winding_C", terms.winding_C);
-  with.given("charge_Ah", terms.charge_Ah);
-  with.to_change("supply_V", terms.supply_V), with.to_change("source_ohm", terms.source_ohm);
-  with.to_change("duty", terms.duty), with.to_change("tempco_per_K", terms.tempco_per_K);
-  with.to_change("series_ohm", terms.series_ohm), with.to_change("counter_V", terms.counter_V);
-}
-template <class Scalar, class Visitor>
-void visit(plant::AirTerms<Scalar>& terms, Visitor&& with) {
-  with.given("t_s", terms.t_s), with.given("measured_ambient_C", terms.measured_ambient_C);
-  with.to_change("ambient_C", terms.ambient_C);
-}
-template <class Scalar, class Visitor>
-void visit(plant::ThermalTerms<Scalar>& terms, Visitor&& with) {
-  with.given("t_s", terms.t_s), with.given("airspeed_mps", terms.airspeed_mps);
-  with.given("neighbour_C", terms.neighbour_C), with.given("rate_dps", terms.rate_dps);
-  with.given("measured_ambient_C", terms.measured_ambient_C), with.given("ambient_C", terms.ambient_C);
-  with.given("winding_C", terms.winding_C), with.given("surface_C", terms.surface_C);
-  with.given("current_A", terms.current_A), with.given("supply_V", terms.supply_V);
-  with.given("v_rms_V", terms.v_rms_V);
-  with.to_change("heat_W", terms.heat_W), with.to_change("conductance_factor", terms.conductance_factor);
-  with.to_change("extra_loss_W", terms.extra_loss_W);
-}
-template <class Scalar, class Visitor>
-void visit(plant::ThermalStructure<Scalar>& shape, Visitor&& with) {
-  with.to_change("two_nodes", shape.two_nodes), with.to_change("winding_share", shape.winding_share);
-  with.to_change("coupling_W_per_K", shape.coupling_W_per_K);
-  with.to_change("lagged", shape.lagged), with.to_change("thermometer_lag_s", shape.thermometer_lag_s);
-  with.to_change("soaks", shape.soaks), with.to_change("soaking_share", shape.soaking_share);
-  with.to_change("soaking_W_per_K", shape.soaking_W_per_K);
-  with.to_change("soaking_loss_W_per_K", shape.soaking_loss_W_per_K);
-  with.to_change("soaking_added", shape.soaking_added);
-  with.to_change("soaking_J_per_K", shape.soaking_J_per_K);
-  with.to_change("enclosed", shape.enclosed), with.to_change("enclosed_share", shape.enclosed_share);
-  with.to_change("enclosed_W_per_K", shape.enclosed_W_per_K);
-  with.to_change("heating_exchanged", shape.heating_exchanged);
-}
-template <class Scalar, class Visitor>
-void visit(plant::AxisStructure<Scalar>& shape, Visitor&& with) {
-  with.to_change("delayed", shape.delayed), with.to_change("delay_s", shape.delay_s);
-  with.to_change("target_delayed", shape.target_delayed),
-      with.to_change("target_delay_s", shape.target_delay_s);
-  with.to_change("compliant", shape.compliant), with.to_change("far_share", shape.far_share);
-  with.to_change("spring_rad_per_s", shape.spring_rad_per_s);
-  with.to_change("spring_damping", shape.spring_damping);
-  with.to_change("gapped", shape.gapped), with.to_change("gap_rad", shape.gap_rad);
-}
-template <class Scalar, class Visitor>
-void visit(plant::BenchReadings<Scalar>& terms, Visitor&& with) {
-  with.given("t_s", terms.t_s), with.given("measured_ambient_C", terms.measured_ambient_C);
-  with.to_change("current_A", terms.current_A), with.to_change("motor_C", terms.motor_C);
-}
-template <class Scalar, class Visitor>
-void visit(plant::DriveTerms<Scalar>& terms, Visitor&& with) {
-  with.given("t_s", terms.t_s), with.given("motor_C", terms.motor_C);
-  with.to_change("drive_A", terms.drive_A);
-  with.to_change("torque_constant_Nm_per_A", terms.torque_constant_Nm_per_A);
-}
-template <class Scalar, class Visitor>
-void visit(plant::AxisTerms<Scalar>& terms, Visitor&& with) {
-  with.given("t_s", terms.t_s), with.given("angle_rad", terms.angle_rad);
-  with.given("rate_rad_per_s", terms.rate_rad_per_s), with.given("drive_Nm", terms.drive_Nm);
-  with.to_change("load_Nm", terms.load_Nm), with.to_change("delivered_Nm", terms.delivered_Nm);
-}
-template <class Scalar, class Visitor>
-void visit(plant::FrictionTerms<Scalar>& terms, Visitor&& with) {
-  with.given("t_s", terms.t_s), with.given("motor_C", terms.motor_C),
-      with.given("angle_rad", terms.angle_rad);
-  with.given("rate_rad_per_s", terms.rate_rad_per_s), with.given("drive_Nm", terms.drive_Nm);
-  with.given("load_Nm", terms.load_Nm), with.given("transmitted_Nm", terms.transmitted_Nm());
-  with.given("forward_Nm", terms.forward_Nm), with.given("backward_Nm", terms.backward_Nm);
-  with.to_change("factor", terms.factor), with.to_change("torque_Nm", terms.torque_Nm);
-}
-template <class Scalar, class Visitor>
-void visit(plant::AxisReadings<Scalar>& terms, Visitor&& with) {
-  with.given("t_s", terms.t_s);
-  with.to_change("angle_deg", terms.angle_deg), with.to_change("rate_dps", terms.rate_dps);
-}
-
 /// Puts members into an object's attributes.
 class Out {
 public:
@@ -153,6 +48,9 @@ public:
   template <class Value>
   void given(const char* name, const Value& value) {
     to_.attr(name) = py::cast(value);
+  }
+  void given(const char* name, const plant::GivenExpression& value) {
+    to_.attr(name) = py::cast(static_cast<const plant::Expression&>(value));
   }
   template <class Value>
   void to_change(const char* name, const Value& value) {
@@ -173,7 +71,8 @@ public:
   void to_change(const char* name, Value& value) const {
     const py::object answer = from_.attr(name);
     try {
-      value = answer.cast<Value>();
+      if constexpr (std::is_same_v<Value, bool>) value = answer.cast<bool>();
+      else value = number_of<Value>(answer);
     } catch (const py::cast_error&) {
       throw plant::InvalidInput("effect '" + id_ + "' left " + std::string(py::str(answer.get_type())) +
                                 " in " + name + "; expected " +
@@ -186,15 +85,48 @@ private:
   const std::string& id_;
 };
 
-/// The functions of an effect, by the place where they act; null where it does not.
+/// Appends the values of members to a list.
+template <class Scalar>
+struct Taken {
+  std::vector<Scalar>& list;  ///< where they go
+  template <class Value>
+  void given(const char*, const Value& value) const {
+    list.push_back(Scalar(value));
+  }
+  template <class Value>
+  void to_change(const char*, const Value& value) const {
+    list.push_back(Scalar(value));
+  }
+};
+
+/// Sets the members that may be changed from a list.
+template <class Scalar>
+struct Answered {
+  const std::vector<Scalar>& list;  ///< what they become
+  std::size_t& at;                  ///< place of the next one
+  template <class Value>
+  void given(const char*, const Value&) const {}
+  template <class Value>
+  void to_change(const char*, Value& value) const {
+    value = list[at++];
+  }
+};
+
+/// A function at its place.
+struct Act {
+  Shared function;                               ///< null: the effect does not act there
+  std::shared_ptr<const TracedFunction> traced;  ///< what it computes; null: it is called each time
+};
+
+/// The functions of an effect, by the place where they act.
 struct Acts {
-  Shared electrical, air, thermal, thermal_structure, bench_readings;  ///< on a bench
-  Shared drive, axis, friction, axis_structure, axis_readings;         ///< on an axis
+  Act electrical, air, thermal, thermal_structure, bench_readings;  ///< on a bench
+  Act drive, axis, friction, axis_structure, axis_readings;         ///< on an axis
 
   /// A name of a place, its function here, and its flag in a set of hooks.
   struct Place {
     const char* name;              ///< as `on` has it
-    Shared Acts::*act;             ///< its function
+    Act Acts::*act;                ///< its function
     bool plant::HookSet::*is_set;  ///< that it has one
   };
 
@@ -250,23 +182,53 @@ public:
 
 private:
   template <class Terms>
-  void run(const Scalar* p, Terms& terms, const Shared& act) const {
-    if (!act) return;
-    constexpr bool has_states = std::is_same_v<Terms, plant::AxisTerms<Scalar>> ||
-                                std::is_same_v<Terms, plant::FrictionTerms<Scalar>>;
-    constexpr bool has_friction = std::is_same_v<Terms, plant::FrictionTerms<Scalar>>;
+  static constexpr bool has_states =
+      std::is_same_v<Terms, plant::AxisTerms<Scalar>> || std::is_same_v<Terms, plant::FrictionTerms<Scalar>>;
+  template <class Terms>
+  static constexpr bool has_friction = std::is_same_v<Terms, plant::FrictionTerms<Scalar>>;
+  template <class Terms>
+  static constexpr bool is_structure = std::is_same_v<Terms, plant::ThermalStructure<Scalar>> ||
+                                       std::is_same_v<Terms, plant::AxisStructure<Scalar>>;
+
+  template <class Terms>
+  void run(const Scalar* p, Terms& terms, const Act& act) const {
+    if constexpr (!is_structure<Terms>)
+      if (act.traced) return compute(p, terms, *act.traced);
+    if (!act.function) return;
     const py::gil_scoped_acquire lock;
     const py::object members = (*fresh_)(), values = (*fresh_)();
     visit(terms, Out(members));
     for (std::size_t i = 0; i < info_.parameters.size(); ++i)
       values.attr(info_.parameters[i].name.c_str()) = py::cast(p[i]);
     [[maybe_unused]] const auto added = std::make_shared<AddedFriction<Scalar>>();
-    if constexpr (has_friction) members.attr("add_friction") = py::cast(added);
-    if constexpr (has_states) give_states(terms.own, members);
-    (*act)(values, members);
+    if constexpr (has_friction<Terms>) members.attr("add_friction") = py::cast(added);
+    if constexpr (has_states<Terms>) give_states(terms.own, members);
+    (*act.function)(values, members);
     visit(terms, Back(members, info_.id));
-    if constexpr (has_friction) added->to(terms);
-    if constexpr (has_states) take_states(members, terms.own);
+    if constexpr (has_friction<Terms>) added->to(terms);
+    if constexpr (has_states<Terms>) take_states(members, terms.own);
+  }
+
+  /// The same without Python. Its numbers are those of EffectMembers::call().
+  template <class Terms>
+  void compute(const Scalar* p, Terms& terms, const TracedFunction& traced) const {
+    thread_local std::vector<Scalar> given, answer;
+    given.assign(p, p + info_.parameters.size());
+    visit(terms, Taken<Scalar>{given});
+    if constexpr (has_states<Terms>)
+      for (std::size_t i = 0; i < info_.states.size(); ++i)
+        for (const Scalar& one : {terms.own[i].value, terms.own[i].slope, terms.own[i].per_s})
+          given.push_back(one);
+    traced.compute(given, answer);
+    std::size_t at = 0;
+    visit(terms, Answered<Scalar>{answer, at});
+    if constexpr (has_states<Terms>)
+      for (std::size_t i = 0; i < info_.states.size(); ++i)
+        terms.own[i].slope = answer[at++], terms.own[i].per_s = answer[at++];
+    if constexpr (has_friction<Terms>)
+      for (; at < answer.size(); at += 4)
+        terms.add_friction(answer[at], answer[at + 1], answer[at + 2], answer[at + 3]);
+    assert(at == answer.size());
   }
 
   // `terms.own` has them by name, each with its value and what moves it.
@@ -295,7 +257,7 @@ private:
   Shared fresh_;  // an object without attributes
 };
 
-/// A Python function does not write its equation down.
+/// A Python function that cannot be traced does not write its equation down.
 class Unwritten : public plant::detail::Hooks<plant::Expression> {
 public:
   using Scalar = plant::Expression;
@@ -371,19 +333,56 @@ inline plant::EffectInfo info_of(const py::dict& given) {
   return info;
 }
 
-/// Adds an effect whose equation is `act(p, terms)` to a catalogue, on one place or on several.
-inline void add_effect(plant::Catalogue& catalogue, const py::dict& given) {
-  plant::CatalogueEntry entry;
-  entry.info = info_of(given);
-  plant::HookSet& hooks = entry.hooks;
+/// Traces the functions of an effect where that can be done. What shapes a model is called once a simulation, and is not traced.
+/// @return whether each of the others was
+inline bool trace(const plant::EffectInfo& info, Acts& acts) {
+  using Number = plant::Expression;
+  bool all = true;
+  const auto follow = [&](Act& act, auto&& terms, bool has_states = false, bool has_friction = false) {
+    if (!act.function) return;
+    act.traced = TracedFunction::of(*act.function, EffectMembers(info, terms, has_states, has_friction));
+    all = all && act.traced != nullptr;
+  };
+  const Number none;
+  const plant::GivenExpression given;
+  follow(acts.electrical, plant::ElectricalTerms<Number>());
+  follow(acts.air, plant::AirTerms<Number>());
+  follow(acts.thermal, plant::ThermalTerms<Number>());
+  follow(acts.bench_readings, plant::BenchReadings<Number>());
+  follow(acts.drive, plant::DriveTerms<Number>());
+  follow(acts.axis, plant::AxisTerms<Number>{given, none, none, none, none, none}, true);
+  follow(acts.friction, plant::FrictionTerms<Number>(given, given, none, none, none, none), true, true);
+  follow(acts.axis_readings, plant::AxisReadings<Number>());
+  return all;
+}
+
+/// The functions of an effect by place, from a Python dict. @param hooks  where they act
+inline Acts acts_of(const py::dict& given, plant::HookSet& hooks) {
   Acts acts;
   const auto by_place = given["acts"].cast<std::map<std::string, py::object>>();
   for (const Acts::Place& place : Acts::places()) {
     const auto found = by_place.find(place.name);
     if (found == by_place.end()) continue;
-    acts.*(place.act) = shared(found->second);
+    (acts.*(place.act)).function = shared(found->second);
     hooks.*(place.is_set) = true;
   }
+  return acts;
+}
+
+/// Whether the functions of an effect are computed without Python, but for what shapes the model.
+inline bool is_traced(const py::dict& given) {
+  plant::HookSet hooks;
+  Acts acts = acts_of(given, hooks);
+  return trace(info_of(given), acts);
+}
+
+/// Adds an effect whose equation is `act(p, terms)` to a catalogue, on one place or on several.
+inline void add_effect(plant::Catalogue& catalogue, const py::dict& given) {
+  plant::CatalogueEntry entry;
+  entry.info = info_of(given);
+  plant::HookSet& hooks = entry.hooks;
+  Acts acts = acts_of(given, hooks);
+  const bool is_written = trace(entry.info, acts);
   const auto need = [&](plant::Need one) {
     std::vector<plant::Need>& needs = entry.info.needs;
     if (std::find(needs.begin(), needs.end(), one) == needs.end()) needs.push_back(one);
@@ -394,7 +393,8 @@ inline void add_effect(plant::Catalogue& catalogue, const py::dict& given) {
   entry.plain = std::make_shared<Hooks<double>>(entry.info, acts);
   entry.dual = std::make_shared<Hooks<plant::Dual>>(entry.info, acts);
   entry.wide = std::make_shared<Hooks<plant::WideDual>>(entry.info, acts);
-  entry.traced = std::make_shared<Unwritten>();
+  if (is_written) entry.traced = std::make_shared<Hooks<plant::Expression>>(entry.info, acts);
+  else entry.traced = std::make_shared<Unwritten>();
   catalogue.add(std::move(entry));
 }
 

@@ -129,8 +129,9 @@ class Effect:
     """An effect of one's own, which is simulated, fitted, weighed and reported like those of the catalogue.
 
     act(p, terms): its equation, called with its parameters and the terms of the place it acts on, both with attributes. It
-    changes terms in place. In fits both are numbers that carry their derivatives: +, -, *, /, **, abs(), comparisons, curve()
-    and NumPy's exp, log, sin, cos, tan, tanh, sqrt, arctan and the like know them.
+    changes terms in place, and answers equal calls equally. It is called once, with numbers that write down what is done to them,
+    and then computed without Python. They know +, -, *, /, **, abs(), comparisons, curve() and NumPy's exp, log, sin, cos, tan, tanh
+    and sqrt. A function that does more is called at each step: is_traced is False then. In fits its numbers carry their derivatives.
     on: "electrical", "air", "thermal", "bench_readings", "drive", "axis", "friction" or "axis_readings"; terms are those of the
     C++ documentation (plant/terms.hpp), such as terms.rate_rad_per_s and terms.load_Nm on an axis. "thermal_structure" and
     "axis_structure" set the model's shape once per simulation: a second mass, a spring.
@@ -175,6 +176,11 @@ class Effect:
                        "prose": prose or (words[0] if words else id).strip().splitlines()[0], "experiment": experiment or "vary every input",
                        "states": list(dict(states or {}).items()), "needs": list(needs), "costly": bool(costly),
                        "strikes": bool(strikes)}
+
+    @property
+    def is_traced(self):
+        """Whether it is computed without Python, but for what shapes the model."""
+        return _thermopower.is_traced(self._given)
 
     def __repr__(self):
         return f"Effect({self.id!r})"

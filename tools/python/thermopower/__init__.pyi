@@ -47,6 +47,8 @@ class Effect:
         costly: bool = ...,
         strikes: bool = ...,
     ) -> None: ...
+    @property
+    def is_traced(self) -> bool: ...
 
 class Plant:
     def __init__(

@@ -92,6 +92,8 @@ THERMOPOWER_GAP_INLINE bool Trace::decide(int condition) {
   if (!following_) throw NotTraceable("its code branches where no branch can be followed");
   for (std::size_t i = 0; i < used_; ++i)
     if (path_[i].condition == condition) return path_[i].value;
+  // A loop that waits for a condition would never end: both its ways are followed.
+  if (used_ == static_cast<std::size_t>(most_ways)) throw NotTraceable("its code branches too often");
   if (used_ == path_.size()) path_.push_back({condition, true});
   return path_[used_++].value;
 }
