@@ -202,3 +202,44 @@ TEST_CASE("causes are named beside a third one, though the viscous friction was 
   CHECK(test::causes_of(all) ==
         std::vector<std::string>{"cable_spring", "coulomb_friction", "torque_ripple"});
 }
+
+TEST_CASE(
+    "friction in a motion one way is weighed beside what looks like it, whichever curves follow it as well") {
+  // A drum that never turns back, with 4 mN m of dry friction: a constant torque does the same.
+  constexpr double step_s = 1e-3, inertia_kgm2 = 2e-3, viscous_Nms_per_rad = 2e-3, friction_Nm = 4e-3,
+                   Nm_per_A = 0.1;
+  constexpr double deg_per_rad = 57.29577951308232;
+  Model drum;
+  drum.axis = plant::RigidAxisModel{inertia_kgm2, viscous_Nms_per_rad, Nm_per_A};
+  const auto recorded = [&](std::uint64_t seed) {
+    constexpr int rows = 600;
+    test::Noise noise(seed);
+    Recording r;
+    r.name = "drum";
+    r.t_s.resize(rows);
+    Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+    double turned_rad = 0.0, omega = 20.0;
+    for (int i = 0; i < rows; ++i) {
+      r.t_s[i] = 10.0 * step_s * i;
+      drive[i] = 0.4 + (std::sin(2.0 * r.t_s[i]) < 0.0 ? -0.2 : 0.2);
+      angle[i] = deg_per_rad * turned_rad + 0.02 * noise();
+      rate[i] = deg_per_rad * omega + 0.2 * noise();
+      for (int k = 0; k < 10; ++k) {
+        omega += step_s * (Nm_per_A * drive[i] - viscous_Nms_per_rad * omega - friction_Nm) / inertia_kgm2;
+        turned_rad += step_s * omega;
+      }
+    }
+    r.set("drive_A", drive);
+    r.set("angle_deg", angle);
+    r.set("rate_dps", rate);
+    return r;
+  };
+  for (const std::uint64_t seed : {3u, 4u, 5u}) {
+    const Diagnosis found = diagnose(drum, {recorded(seed)}, {recorded(seed + 100)});
+    CAPTURE(seed);
+    double friction = 0.0;
+    for (const RankedExplanation& one : found.ranking)
+      if (one.effects == std::vector<std::string>{"coulomb_friction"}) friction = one.probability;
+    CHECK(friction > 0.01);
+  }
+}

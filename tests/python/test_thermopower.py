@@ -269,19 +269,21 @@ class Remedies(unittest.TestCase):
 class Designing(unittest.TestCase):
     def test_writes_the_experiment_that_tells_two_causes_apart(self):
         # A drum that turns one way only: dry friction and a constant torque look the same.
-        random = np.random.default_rng(3)
-        t = np.arange(0.0, 6.0, 0.01)
-        drive = 0.4 + 0.2 * np.sign(np.sin(2.0 * t))
-        angle, rate, table = 0.0, 20.0, []
-        for level in drive:
-            table.append((angle, rate))
-            for _ in range(10):
-                rate += 0.001 * (0.1 * level - 2e-3 * rate - 0.004 * np.sign(rate)) / 2e-3
-                angle += 0.001 * rate
-        angle, rate = np.array(table).T
-        run = {"t_s": t, "drive_A": drive, "angle_deg": np.degrees(angle) + random.normal(0.0, 0.02, len(t)),
-               "rate_dps": np.degrees(rate) + random.normal(0.0, 0.2, len(t))}
-        found = thermopower.diagnose(AXIS, run)
+        def drum(seed):
+            random = np.random.default_rng(seed)
+            t = np.arange(0.0, 6.0, 0.01)
+            drive = 0.4 + 0.2 * np.sign(np.sin(2.0 * t))
+            angle, rate, table = 0.0, 20.0, []
+            for level in drive:
+                table.append((angle, rate))
+                for _ in range(10):
+                    rate += 0.001 * (0.1 * level - 2e-3 * rate - 0.004 * np.sign(rate)) / 2e-3
+                    angle += 0.001 * rate
+            angle, rate = np.array(table).T
+            return {"t_s": t, "drive_A": drive, "angle_deg": np.degrees(angle) + random.normal(0.0, 0.02, len(t)),
+                    "rate_dps": np.degrees(rate) + random.normal(0.0, 0.2, len(t))}
+
+        found = thermopower.diagnose(AXIS, drum(3), drum(103))
         self.assertIn(found.verdict, ("ambiguous", "partial"), str(found))
         limits = {"format": "thermopower-limits/1", "duration_s": 6, "row_s": 0.02, "vary": {"drive_A": {"from": -1, "to": 1}},
                   "angle_deg": [-36000, 36000], "rate_dps": 4000}

@@ -89,7 +89,8 @@ public:
     const double lost = Attribution::lost_from * attempt.best().train.total();
     for (std::size_t place = 0; place < order.size(); ++place) {
       const Explanation& one = candidates[order[place]].explanation;
-      const bool among_singles = one.size() == 1 && single++ < 7;
+      // Curves bend to what several causes with a name do alike: they take the place of none.
+      const bool among_singles = one.size() == 1 && (one.has_curve() || single++ < 7);
       const bool is_lost = one.effects.size() > 1 && candidates[order[place]].train.total() > lost;
       const bool is_modest =
           std::find(fairly_modest.begin(), fairly_modest.end(), order[place]) != fairly_modest.end();
