@@ -13,7 +13,7 @@
 #include <vector>
 
 /// @file statistical_model.hpp
-/// The statistical model of the diagnosis, stated once, in the order of @ref gap_method: what is known before the data (priors),
+/// The statistical model of the diagnosis, stated once, in the order of @ref gap_method. It has what is known before the data (priors),
 /// what the data say (the likelihood of residuals), what freedom costs, and how far a difference is believed (odds). Every stage that
 /// fits, compares or prints takes these formulas from here.
 
