@@ -3,6 +3,8 @@
 #pragma once
 
 #include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/expression.hpp>
+#include <thermopower/plant/invalid_input.hpp>
 #include <thermopower/plant/terms.hpp>
 
 #include <pybind11/pybind11.h>
@@ -33,11 +35,6 @@ public:
   }
   /// What was added, in order: forward, backward, transition, tail.
   const std::vector<std::array<Scalar, 4>>& added() const { return added_; }
-  /// Hands on what was added. @param terms  receive it
-  void to(plant::FrictionTerms<Scalar>& terms) const {
-    for (const auto& [forward, backward, transition, tail] : added_)
-      terms.add_friction(forward, backward, transition, tail);
-  }
 
 private:
   std::vector<std::array<Scalar, 4>> added_;
@@ -134,58 +131,107 @@ void visit(plant::AxisReadings<Scalar>& terms, Visitor&& with) {
   with.to_change("angle_deg", terms.angle_deg), with.to_change("rate_dps", terms.rate_dps);
 }
 
-/// A number from Python: one of this kind, or a plain one.
-template <class Number>
-Number number_of(const py::object& one) {
-  if constexpr (!std::is_same_v<Number, double>)
-    if (py::isinstance<Number>(one)) return one.cast<Number>();
-  return Number(one.cast<double>());
+/// A Python object that may be let go by any thread.
+using Shared = std::shared_ptr<py::object>;
+
+/// Holds a Python object until the last of its users is gone.
+inline Shared shared(py::object object) {
+  return Shared(new py::object(std::move(object)), [](py::object* last) {
+    const py::gil_scoped_acquire lock;
+    delete last;
+  });
 }
+
+/// A value as Python sees it: what was recorded is a plain number, or a traced one.
+template <class Value>
+py::object object_of(const Value& value) {
+  if constexpr (std::is_same_v<Value, plant::GivenExpression>)
+    return py::cast(static_cast<const plant::Expression&>(value));
+  else return py::cast(value);
+}
+
+/// What a function in Python left.
+template <class Number>
+struct Left {
+  std::vector<std::pair<const char*, py::object>> changed;  ///< members, then slope and per_s of each state
+  std::vector<std::array<Number, 4>> friction;  ///< that it added: forward, backward, transition, tail
+};
 
 /// The names at one place: parameters of the effect, members of the terms, states, and whether it may add dry friction.
 class EffectMembers {
 public:
-  /// @param terms  of that place; their values do not matter
+  /// Called with the Python lock. @param terms  of that place; their values do not matter
   template <class Terms>
   EffectMembers(const plant::EffectInfo& info, Terms& terms, bool has_states, bool has_friction)
-      : adds_friction_(has_friction) {
+      : id_(info.id),
+        adds_friction_(has_friction),
+        fresh_(shared(py::module_::import("types").attr("SimpleNamespace"))) {
     for (const plant::Parameter& one : info.parameters) parameters_.push_back(one.name);
     visit(terms, Names{members_});
     if (has_states)
       for (const auto& one : info.states) states_.push_back(one.name);
   }
 
-  /// How many numbers call() takes: parameters, then members, then value, slope and per_s of each state.
+  /// How many values call() takes: parameters, then members, then value, slope and per_s of each state.
   std::size_t inputs() const { return parameters_.size() + members_.size() + 3 * states_.size(); }
 
-  /// Calls a function with numbers for all inputs.
-  /// @return the members that may be changed, then slope and per_s of each state, then four numbers for each friction that it added
+  /// Calls a function with all inputs. Called with the Python lock.
   template <class Number>
-  std::vector<Number> call(const py::object& act, const std::vector<Number>& given) const {
+  Left<Number> call(const py::object& act, const std::vector<py::object>& given) const {
     assert(given.size() == inputs());
-    const py::object fresh = py::module_::import("types").attr("SimpleNamespace");
-    const py::object values = fresh(), terms = fresh(), own = fresh();
+    const py::object &fresh = *fresh_, values = fresh(), terms = fresh();
     std::size_t at = 0;
-    for (const std::string& name : parameters_) values.attr(name.c_str()) = py::cast(given[at++]);
-    for (const auto& [name, changes] : members_) terms.attr(name) = py::cast(given[at++]);
+    for (const std::string& name : parameters_) values.attr(name.c_str()) = given[at++];
+    for (const auto& [name, changes] : members_) terms.attr(name) = given[at++];
+    if (!states_.empty()) terms.attr("own") = fresh();
     for (const std::string& name : states_) {
       const py::object one = fresh();
-      for (const char* part : {"value", "slope", "per_s"}) one.attr(part) = py::cast(given[at++]);
-      own.attr(name.c_str()) = one;
+      for (const char* part : {"value", "slope", "per_s"}) one.attr(part) = given[at++];
+      terms.attr("own").attr(name.c_str()) = one;
     }
-    if (!states_.empty()) terms.attr("own") = own;
     const auto added = std::make_shared<AddedFriction<Number>>();
     if (adds_friction_) terms.attr("add_friction") = py::cast(added);
     act(values, terms);
-    std::vector<Number> answer;
+    Left<Number> left;
     for (const auto& [name, changes] : members_)
-      if (changes) answer.push_back(number_of<Number>(terms.attr(name)));
+      if (changes) left.changed.emplace_back(name, terms.attr(name));
     for (const std::string& name : states_)
       for (const char* part : {"slope", "per_s"})
-        answer.push_back(number_of<Number>(own.attr(name.c_str()).attr(part)));
-    for (const std::array<Number, 4>& friction : added->added())
-      answer.insert(answer.end(), friction.begin(), friction.end());
-    return answer;
+        left.changed.emplace_back(part, terms.attr("own").attr(name.c_str()).attr(part));
+    left.friction = added->added();
+    return left;
+  }
+
+  /// A value that a function left. @throws plant::InvalidInput where it is of another kind
+  template <class Value>
+  Value left_as(const std::pair<const char*, py::object>& one) const {
+    const auto& [name, object] = one;
+    try {
+      if constexpr (!std::is_same_v<Value, double> && !std::is_same_v<Value, bool>) {
+        if (py::isinstance<Value>(object)) return object.template cast<Value>();
+        return Value(object.template cast<double>());
+      } else {
+        return object.template cast<Value>();
+      }
+    } catch (const py::cast_error&) {
+      throw plant::InvalidInput("effect '" + id_ + "' left " + std::string(py::str(object.get_type())) +
+                                " in " + name + "; expected " +
+                                (std::is_same_v<Value, bool> ? "True or False" : "a number"));
+    }
+  }
+
+  /// Calls a function with numbers for all inputs.
+  /// @return all that it left, four numbers for each friction
+  template <class Number>
+  std::vector<Number> answer(const py::object& act, const std::vector<Number>& given) const {
+    std::vector<py::object> objects;
+    for (const Number& one : given) objects.push_back(py::cast(one));
+    const Left<Number> left = call<Number>(act, objects);
+    std::vector<Number> numbers;
+    for (const auto& one : left.changed) numbers.push_back(left_as<Number>(one));
+    for (const std::array<Number, 4>& one : left.friction)
+      numbers.insert(numbers.end(), one.begin(), one.end());
+    return numbers;
   }
 
 private:
@@ -204,9 +250,11 @@ private:
     }
   };
 
+  std::string id_;
   std::vector<std::string> parameters_, states_;
   Members members_;
   bool adds_friction_ = false;
+  Shared fresh_;  // an object without attributes
 };
 
 }  // namespace thermopower::python

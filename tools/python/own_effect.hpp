@@ -30,91 +30,36 @@
 
 namespace thermopower::python {
 
-/// A Python object that may be let go by any thread.
-using Shared = std::shared_ptr<py::object>;
-
-/// Holds a Python object until the last of its users is gone.
-inline Shared shared(py::object object) {
-  return Shared(new py::object(std::move(object)), [](py::object* last) {
-    const py::gil_scoped_acquire lock;
-    delete last;
-  });
-}
-
-/// Puts members into an object's attributes.
-class Out {
-public:
-  explicit Out(const py::object& to) : to_(to) {}
-  template <class Value>
-  void given(const char* name, const Value& value) {
-    to_.attr(name) = py::cast(value);
-  }
-  void given(const char* name, const plant::GivenExpression& value) {
-    to_.attr(name) = py::cast(static_cast<const plant::Expression&>(value));
-  }
-  template <class Value>
-  void to_change(const char* name, const Value& value) {
-    given(name, value);
-  }
-
-private:
-  const py::object& to_;
-};
-
-/// Reads back what may be changed.
-class Back {
-public:
-  Back(py::object from, const std::string& id) : from_(std::move(from)), id_(id) {}
-  template <class Value>
-  void given(const char*, const Value&) const {}
-  template <class Value>
-  void to_change(const char* name, Value& value) const {
-    const py::object answer = from_.attr(name);
-    try {
-      if constexpr (std::is_same_v<Value, bool>) value = answer.cast<bool>();
-      else value = number_of<Value>(answer);
-    } catch (const py::cast_error&) {
-      throw plant::InvalidInput("effect '" + id_ + "' left " + std::string(py::str(answer.get_type())) +
-                                " in " + name + "; expected " +
-                                (std::is_same_v<Value, bool> ? "True or False" : "a number"));
-    }
-  }
-
-private:
-  py::object from_;
-  const std::string& id_;
-};
-
-/// Appends the values of members to a list.
-template <class Scalar>
-struct Taken {
-  std::vector<Scalar>& list;  ///< where they go
+/// Hands on all members. @param Put  gets a value
+template <class Put>
+struct EachInput {
+  Put& put;  ///< gets them in order
   template <class Value>
   void given(const char*, const Value& value) const {
-    list.push_back(Scalar(value));
+    put(value);
   }
   template <class Value>
   void to_change(const char*, const Value& value) const {
-    list.push_back(Scalar(value));
+    put(value);
   }
 };
 
-/// Sets the members that may be changed from a list.
-template <class Scalar>
-struct Answered {
-  const std::vector<Scalar>& list;  ///< what they become
-  std::size_t& at;                  ///< place of the next one
+/// Hands on the members that may be changed.
+template <class Set>
+struct EachChange {
+  Set& set;  ///< gets them in order
   template <class Value>
   void given(const char*, const Value&) const {}
   template <class Value>
   void to_change(const char*, Value& value) const {
-    value = list[at++];
+    set(value);
   }
 };
 
 /// A function at its place.
 struct Act {
   Shared function;                               ///< null: the effect does not act there
+  std::shared_ptr<const EffectMembers> members;  ///< what it finds there
   std::shared_ptr<const TracedFunction> traced;  ///< what it computes; null: it is called each time
 };
 
@@ -153,10 +98,7 @@ template <class Scalar>
 class Hooks : public plant::detail::Hooks<Scalar> {
 public:
   /// Called with the Python lock.
-  Hooks(plant::EffectInfo info, Acts acts)
-      : info_(std::move(info)),
-        acts_(std::move(acts)),
-        fresh_(shared(py::module_::import("types").attr("SimpleNamespace"))) {}
+  Hooks(plant::EffectInfo info, Acts acts) : info_(std::move(info)), acts_(std::move(acts)) {}
   void call(const Scalar* p, plant::ElectricalTerms<Scalar>& terms) const final {
     run(p, terms, acts_.electrical);
   }
@@ -190,71 +132,59 @@ private:
   static constexpr bool is_structure = std::is_same_v<Terms, plant::ThermalStructure<Scalar>> ||
                                        std::is_same_v<Terms, plant::AxisStructure<Scalar>>;
 
-  template <class Terms>
-  void run(const Scalar* p, Terms& terms, const Act& act) const {
-    if constexpr (!is_structure<Terms>)
-      if (act.traced) return compute(p, terms, *act.traced);
-    if (!act.function) return;
-    const py::gil_scoped_acquire lock;
-    const py::object members = (*fresh_)(), values = (*fresh_)();
-    visit(terms, Out(members));
-    for (std::size_t i = 0; i < info_.parameters.size(); ++i)
-      values.attr(info_.parameters[i].name.c_str()) = py::cast(p[i]);
-    [[maybe_unused]] const auto added = std::make_shared<AddedFriction<Scalar>>();
-    if constexpr (has_friction<Terms>) members.attr("add_friction") = py::cast(added);
-    if constexpr (has_states<Terms>) give_states(terms.own, members);
-    (*act.function)(values, members);
-    visit(terms, Back(members, info_.id));
-    if constexpr (has_friction<Terms>) added->to(terms);
-    if constexpr (has_states<Terms>) take_states(members, terms.own);
+  /// Hands on what a function gets, in the order of EffectMembers.
+  template <class Terms, class Put>
+  void for_each_input(const Scalar* p, Terms& terms, Put&& put) const {
+    for (std::size_t i = 0; i < info_.parameters.size(); ++i) put(p[i]);
+    visit(terms, EachInput<Put>{put});
+    if constexpr (has_states<Terms>)
+      for (std::size_t i = 0; i < info_.states.size(); ++i)
+        put(terms.own[i].value), put(terms.own[i].slope), put(terms.own[i].per_s);
   }
 
-  /// The same without Python. Its numbers are those of EffectMembers::call().
+  /// Hands on what a function may change, in that order.
+  template <class Terms, class Set>
+  void for_each_change(Terms& terms, Set&& set) const {
+    visit(terms, EachChange<Set>{set});
+    if constexpr (has_states<Terms>)
+      for (std::size_t i = 0; i < info_.states.size(); ++i) set(terms.own[i].slope), set(terms.own[i].per_s);
+  }
+
+  template <class Terms>
+  void run(const Scalar* p, Terms& terms, const Act& act) const {
+    if (!act.function) return;
+    if constexpr (!is_structure<Terms>)
+      if (act.traced) return compute(p, terms, *act.traced);
+    const py::gil_scoped_acquire lock;
+    std::vector<py::object> given;
+    for_each_input(p, terms, [&](const auto& one) { given.push_back(object_of(one)); });
+    const Left<Scalar> left = act.members->template call<Scalar>(*act.function, given);
+    std::size_t at = 0;
+    for_each_change(terms, [&](auto& one) {
+      one = act.members->template left_as<std::decay_t<decltype(one)>>(left.changed[at++]);
+    });
+    if constexpr (has_friction<Terms>)
+      for (const std::array<Scalar, 4>& one : left.friction)
+        terms.add_friction(one[0], one[1], one[2], one[3]);
+  }
+
+  /// The same without Python.
   template <class Terms>
   void compute(const Scalar* p, Terms& terms, const TracedFunction& traced) const {
     thread_local std::vector<Scalar> given, answer;
-    given.assign(p, p + info_.parameters.size());
-    visit(terms, Taken<Scalar>{given});
-    if constexpr (has_states<Terms>)
-      for (std::size_t i = 0; i < info_.states.size(); ++i)
-        for (const Scalar& one : {terms.own[i].value, terms.own[i].slope, terms.own[i].per_s})
-          given.push_back(one);
+    given.clear();
+    for_each_input(p, terms, [](const auto& one) { given.push_back(Scalar(one)); });
     traced.compute(given, answer);
     std::size_t at = 0;
-    visit(terms, Answered<Scalar>{answer, at});
-    if constexpr (has_states<Terms>)
-      for (std::size_t i = 0; i < info_.states.size(); ++i)
-        terms.own[i].slope = answer[at++], terms.own[i].per_s = answer[at++];
+    for_each_change(terms, [&](Scalar& one) { one = answer[at++]; });
     if constexpr (has_friction<Terms>)
       for (; at < answer.size(); at += 4)
         terms.add_friction(answer[at], answer[at + 1], answer[at + 2], answer[at + 3]);
     assert(at == answer.size());
   }
 
-  // `terms.own` has them by name, each with its value and what moves it.
-  void give_states(const plant::OwnState<Scalar>* states, const py::object& members) const {
-    if (info_.states.empty()) return;
-    const py::object own = (*fresh_)();
-    for (std::size_t i = 0; i < info_.states.size(); ++i) {
-      const py::object one = (*fresh_)();
-      one.attr("value") = py::cast(states[i].value);
-      one.attr("slope") = py::cast(states[i].slope);
-      one.attr("per_s") = py::cast(states[i].per_s);
-      own.attr(info_.states[i].name.c_str()) = one;
-    }
-    members.attr("own") = own;
-  }
-  void take_states(const py::object& members, plant::OwnState<Scalar>* states) const {
-    for (std::size_t i = 0; i < info_.states.size(); ++i) {
-      const Back back(members.attr("own").attr(info_.states[i].name.c_str()), info_.id);
-      back.to_change("slope", states[i].slope);
-      back.to_change("per_s", states[i].per_s);
-    }
-  }
-
   plant::EffectInfo info_;
   Acts acts_;
-  Shared fresh_;  // an object without attributes
 };
 
 /// A Python function that cannot be traced does not write its equation down.
@@ -333,18 +263,26 @@ inline plant::EffectInfo info_of(const py::dict& given) {
   return info;
 }
 
-/// Traces the functions of an effect where that can be done. What shapes a model is called once a simulation, and is not traced.
+/// Says what the functions of an effect find, and traces them where that can be done. What shapes a model is called once a simulation,
+/// and is not traced.
 /// @return whether each of the others was
 inline bool trace(const plant::EffectInfo& info, Acts& acts) {
   using Number = plant::Expression;
   bool all = true;
+  const auto find = [&](Act& act, auto&& terms, bool has_states = false, bool has_friction = false) {
+    if (act.function)
+      act.members = std::make_shared<const EffectMembers>(info, terms, has_states, has_friction);
+    return act.function != nullptr;
+  };
   const auto follow = [&](Act& act, auto&& terms, bool has_states = false, bool has_friction = false) {
-    if (!act.function) return;
-    act.traced = TracedFunction::of(*act.function, EffectMembers(info, terms, has_states, has_friction));
+    if (!find(act, terms, has_states, has_friction)) return;
+    act.traced = TracedFunction::of(*act.function, *act.members);
     all = all && act.traced != nullptr;
   };
   const Number none;
   const plant::GivenExpression given;
+  find(acts.thermal_structure, plant::ThermalStructure<Number>());
+  find(acts.axis_structure, plant::AxisStructure<Number>());
   follow(acts.electrical, plant::ElectricalTerms<Number>());
   follow(acts.air, plant::AirTerms<Number>());
   follow(acts.thermal, plant::ThermalTerms<Number>());

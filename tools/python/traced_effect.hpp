@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "arithmetic.hpp"
 #include "effect_members.hpp"
 
 /// @file traced_effect.hpp
@@ -30,15 +31,9 @@ inline void bind_traced_number(py::module_& module) {
   py::class_<Condition>(module, "TracedCondition").def("__bool__", [](const Condition& one) {
     return static_cast<bool>(one);
   });
-  const auto power = [](const Expression& a, double b) {
-    constexpr double most = 8.0;
-    if (b != std::floor(b) || std::abs(b) > most) return pow(a, Expression(b));
-    Expression product(1.0);
-    for (double i = 0.0; i < std::abs(b); ++i) product *= a;
-    return b < 0.0 ? 1.0 / product : product;
-  };
-  py::class_<Expression>(module, "TracedNumber")
-      .def(py::init<double>())
+  py::class_<Expression> number(module, "TracedNumber");
+  bind_arithmetic(number);
+  number
       .def("__float__",
            [](const Expression& one) {
              if (!one.is_constant())
@@ -46,47 +41,8 @@ inline void bind_traced_number(py::module_& module) {
              return one.constant_value();
            })
       .def(
-          "__add__", [](const Expression& a, const Expression& b) { return a + b; }, py::is_operator())
-      .def(
-          "__radd__", [](const Expression& a, double b) { return b + a; }, py::is_operator())
-      .def(
-          "__sub__", [](const Expression& a, const Expression& b) { return a - b; }, py::is_operator())
-      .def(
-          "__rsub__", [](const Expression& a, double b) { return b - a; }, py::is_operator())
-      .def(
-          "__mul__", [](const Expression& a, const Expression& b) { return a * b; }, py::is_operator())
-      .def(
-          "__rmul__", [](const Expression& a, double b) { return b * a; }, py::is_operator())
-      .def(
-          "__truediv__", [](const Expression& a, const Expression& b) { return a / b; }, py::is_operator())
-      .def(
-          "__rtruediv__", [](const Expression& a, double b) { return b / a; }, py::is_operator())
-      .def("__pow__", power, py::is_operator())
-      .def(
-          "__pow__", [](const Expression& a, const Expression& b) { return pow(a, b); }, py::is_operator())
-      .def(
           "__rpow__", [](const Expression& a, double b) { return pow(Expression(b), a); }, py::is_operator())
-      .def("__neg__", [](const Expression& a) { return -a; })
-      .def("__pos__", [](const Expression& a) { return a; })
-      .def("__abs__", [](const Expression& a) { return abs(a); })
-      .def(
-          "__lt__", [](const Expression& a, const Expression& b) { return a < b; }, py::is_operator())
-      .def(
-          "__gt__", [](const Expression& a, const Expression& b) { return a > b; }, py::is_operator())
-      .def(
-          "__le__", [](const Expression& a, const Expression& b) { return a <= b; }, py::is_operator())
-      .def(
-          "__ge__", [](const Expression& a, const Expression& b) { return a >= b; }, py::is_operator())
-      .def("exp", [](const Expression& a) { return exp(a); })
-      .def("log", [](const Expression& a) { return log(a); })
-      .def("sin", [](const Expression& a) { return sin(a); })
-      .def("cos", [](const Expression& a) { return cos(a); })
-      .def("tan", [](const Expression& a) { return sin(a) / cos(a); })
-      .def("tanh", [](const Expression& a) { return tanh(a); })
-      .def("sqrt", [](const Expression& a) { return sqrt(a); })
-      .def("square", [](const Expression& a) { return a * a; });
-  py::implicitly_convertible<double, Expression>();
-  py::implicitly_convertible<int, Expression>();
+      .def("tan", [](const Expression& a) { return sin(a) / cos(a); });
 }
 
 /// What a function in Python computes at its place, as a list of steps.
@@ -103,7 +59,7 @@ public:
         std::vector<plant::Expression> given;
         for (std::size_t i = 0; i < members.inputs(); ++i)
           given.push_back(traced->trace_.symbol(std::to_string(i)));
-        std::vector<plant::Expression> answer = members.call(act, given);
+        std::vector<plant::Expression> answer = members.answer(act, given);
         if (traced->results_ == 0) traced->results_ = answer.size();
         if (answer.size() != traced->results_)
           throw plant::NotTraceable("its branches add different frictions");
@@ -113,7 +69,7 @@ public:
       if (!traced->agrees(act, members)) return nullptr;
     } catch (const py::error_already_set&) {
       return nullptr;
-    } catch (const py::cast_error&) {
+    } catch (const plant::InvalidInput&) {  // it left no number
       return nullptr;
     } catch (const plant::NotTraceable&) {
       return nullptr;
@@ -206,13 +162,6 @@ private:
     return x;
   }
 
-  static double power(double a, double b) { return std::pow(a, b); }
-  static plant::Expression power(const plant::Expression& a, const plant::Expression& b) { return pow(a, b); }
-  template <class Scalar>
-  static Scalar power(const Scalar& a, const Scalar& b) {
-    return exp(log(a) * b);
-  }
-
   template <class Scalar>
   static Scalar chosen(Kind kind, const Scalar& a, const Scalar& b, const Scalar& yes, const Scalar& no) {
     using plant::value_of;
@@ -253,7 +202,7 @@ private:
       case Kind::function:
         return called(step.function, argument(step.a));
       case Kind::power:
-        return power(argument(step.a), argument(step.b));
+        return raised(argument(step.a), argument(step.b));
       case Kind::choice: {
         const Step& asked = steps_[static_cast<std::size_t>(step.a)];
         return chosen(asked.kind, argument(asked.a), argument(asked.b), argument(step.b), argument(step.c));
@@ -281,7 +230,7 @@ private:
       }
       std::vector<double> answered;
       try {
-        answered = members.call(act, given);
+        answered = members.answer(act, given);
       } catch (const py::error_already_set&) {
         continue;
       }
