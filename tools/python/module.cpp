@@ -12,7 +12,6 @@
 
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/heater_duty.hpp>
-#include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/design/design.hpp>
 #include <thermopower/io.hpp>
 #include <thermopower/io/design_files.hpp>
@@ -228,8 +227,7 @@ Result diagnose_recordings(const gap::Model& model, const std::vector<py::dict>&
   expect_effects(options.without, gap::catalogue_of(model, result.catalogue));
   if (held_out.empty()) {
     for (gap::Recording& recording : train) {
-      auto [first, last] =
-          gap::split(gap::with_heater_duty(model, std::move(recording)), options.held_out_fraction);
+      auto [first, last] = gap::split(model, std::move(recording), options.held_out_fraction);
       recording = std::move(first);
       held_out.push_back(std::move(last));
     }

@@ -6,7 +6,6 @@
 
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/heater_duty.hpp>
-#include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/io.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
@@ -49,8 +48,7 @@ int diagnose(const Arguments& arguments) {
     options.as_recorded = arguments.as_recorded;
     if (held_out.empty()) {
       for (auto& recording : recordings) {
-        auto [first, last] =
-            gap::split(gap::with_heater_duty(model, std::move(recording)), options.held_out_fraction);
+        auto [first, last] = gap::split(model, std::move(recording), options.held_out_fraction);
         recording = std::move(first);
         held_out.push_back(std::move(last));
       }

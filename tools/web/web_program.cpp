@@ -16,7 +16,6 @@
 #include <thermopower/io/summary.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/gap/data/heater_duty.hpp>
-#include <thermopower/gap/data/splitting.hpp>
 
 #include "../io-library/shell_words.hpp"
 
@@ -172,8 +171,7 @@ nlohmann::ordered_json diagnosed(const std::string& model_path, const std::vecto
   options.horizon_s = page.horizon_s;
   if (held_out.empty())
     for (gap::Recording& one : recordings) {
-      auto [first, last] =
-          gap::split(gap::with_heater_duty(model, std::move(one)), options.held_out_fraction);
+      auto [first, last] = gap::split(model, std::move(one), options.held_out_fraction);
       one = std::move(first);
       held_out.push_back(std::move(last));
     }

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <iterator>
+
 #ifdef THERMOPOWER_ABLATION
 #include <cstdlib>
 #include <string>
@@ -10,7 +12,7 @@
 /// @file rule.hpp
 /// The rules of the diagnosis by name, so that each can be taken away and its worth counted (target `gap_ablation`).
 ///
-/// To add a rule: one line in Rule, one in to_string(), and `if (!holds(Rule::name))` where it acts.
+/// To add a rule: one line in Rule, one in rule_names, and `if (!holds(Rule::name))` where it acts.
 
 namespace thermopower::gap::engine {
 
@@ -44,39 +46,40 @@ enum class Rule {
   constants_first        ///< an effect beside constants that explain everything is not named
 };
 
+/// The rules as the page and the environment spell them, in their order.
+inline constexpr const char* rule_names[] = {"outlier_rejection",
+                                             "bursts",
+                                             "clipping",
+                                             "frozen",
+                                             "impossible",
+                                             "repeated_frames",
+                                             "lost_frames",
+                                             "slow_sensors",
+                                             "clock",
+                                             "pauses",
+                                             "resets",
+                                             "under_way",
+                                             "driven_before",
+                                             "dead_columns",
+                                             "units",
+                                             "detached_sensors",
+                                             "lag",
+                                             "command_between_rows",
+                                             "command_noise",
+                                             "target_between_rows",
+                                             "current_noise",
+                                             "heat_between_rows",
+                                             "parsimony",
+                                             "twins",
+                                             "evidence_bound",
+                                             "constants_first"};
+
 /// Number of rules.
-inline constexpr int count_of(Rule) { return 26; }
+inline constexpr int count_of(Rule) { return static_cast<int>(std::size(rule_names)); }
+static_assert(count_of(Rule{}) == static_cast<int>(Rule::constants_first) + 1, "each rule has a name");
 
 /// As the page and the environment spell it.
-inline const char* to_string(Rule rule) {
-  static const char* const names[] = {"outlier_rejection",
-                                      "bursts",
-                                      "clipping",
-                                      "frozen",
-                                      "impossible",
-                                      "repeated_frames",
-                                      "lost_frames",
-                                      "slow_sensors",
-                                      "clock",
-                                      "pauses",
-                                      "resets",
-                                      "under_way",
-                                      "driven_before",
-                                      "dead_columns",
-                                      "units",
-                                      "detached_sensors",
-                                      "lag",
-                                      "command_between_rows",
-                                      "command_noise",
-                                      "target_between_rows",
-                                      "current_noise",
-                                      "heat_between_rows",
-                                      "parsimony",
-                                      "twins",
-                                      "evidence_bound",
-                                      "constants_first"};
-  return names[static_cast<int>(rule)];
-}
+inline const char* to_string(Rule rule) { return rule_names[static_cast<int>(rule)]; }
 
 #ifdef THERMOPOWER_ABLATION
 /// Whether a rule is in force: the one that the environment names in THERMOPOWER_WITHOUT_RULE is not.

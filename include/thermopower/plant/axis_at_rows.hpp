@@ -127,10 +127,11 @@ public:
     for (const RunSpan& run : inputs_.runs) {
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         const double t_s = inputs_.t_s[i] - inputs_.t_s[run.begin];
-        const AxisDrive<double> drive = inputs_.effort_is_output
-                                            ? rollout.driven_by(held_effort_A(i, run), i, t_s)
-                                        : inputs_.closed_loop ? rollout.drive(rollout.servo_A(i, run), i, t_s)
-                                                              : rollout.drive(i, run, i, t_s);
+        const AxisDrive<double> drive =
+            inputs_.effort_is_output
+                ? rollout.driven_by(held_effort_A(i, run, instance.servo.period_s), i, t_s)
+            : inputs_.closed_loop ? rollout.drive(rollout.servo_A(i, run), i, t_s)
+                                  : rollout.drive(i, run, i, t_s);
         const double drive_Nm = drive.torque_Nm;
         const auto now = rollout.step().torques({angle[i], rate[i], 0.0, 0.0}, t_s, drive);
         // A transition that the noise of the rate hides is as good as none.
@@ -236,12 +237,11 @@ public:
   }
 
 private:
-  /// Mean of the measured current until the next row, where the servo changes it in between.
-  double held_effort_A(Eigen::Index i, const RunSpan& run) const {
+  /// Mean of the measured current until the next row, where the servo changes it in between. @param period_s  of the servo
+  double held_effort_A(Eigen::Index i, const RunSpan& run, double period_s) const {
     const double here_A = inputs_.drive_A[i];
     if (i + 1 >= run.end) return here_A;
-    const double between =
-        plant::moving_target_share(servo_gains(model_).period_s, inputs_.t_s[i + 1] - inputs_.t_s[i]);
+    const double between = plant::moving_target_share(period_s, inputs_.t_s[i + 1] - inputs_.t_s[i]);
     return here_A + between * (inputs_.drive_A[i + 1] - here_A);
   }
 

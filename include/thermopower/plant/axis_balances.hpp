@@ -101,9 +101,6 @@ inline std::string repeating(const char* what, double count) {
 inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows>& a,
                                   const std::shared_ptr<const Eigen::VectorXd>& direction,
                                   const std::shared_ptr<const Eigen::VectorXd>& drive_Nm) {
-  const auto sampled = [](const Eigen::MatrixXd& columns) {
-    return directions_of(columns, [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
-  };
   const auto add = [&](const std::string& variable, const std::string& words,
                        std::function<std::vector<Direction>()> directions,
                        double least = -std::numeric_limits<double>::infinity()) {
@@ -112,9 +109,9 @@ inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAt
   };
   add(
       "rate_dps", "a friction that takes an angle to turn round",
-      [a, sampled] { return sampled(-building_up(*a)); }, 0.0);
+      [a] { return sampled_directions(-building_up(*a)); }, 0.0);
   add("rate_dps", "a friction of the same size at every rate",
-      [direction, sampled] { return sampled(*direction); });
+      [direction] { return sampled_directions(*direction); });
   add("rate_dps", "a friction that holds the axis at rest", [a, direction, drive_Nm] {
     // At rest, dry friction takes whatever the drive gives.
     const double rest = AxisFreedomThresholds().resting_noises * a->rate_noise;
@@ -122,25 +119,26 @@ inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAt
     return std::vector<Direction>{flow_sampled(direction->cwiseProduct(moving)),
                                   flow_held(drive_Nm->cwiseProduct((1.0 - moving.array()).matrix()))};
   });
-  add("rate_dps", "another viscous friction", [a, sampled] { return sampled(a->rate); });
+  add("rate_dps", "another viscous friction", [a] { return sampled_directions(a->rate); });
   add("rate_dps", "a friction that depends on the rate",
-      [a, direction, sampled] { return sampled(scaled(hats(a->rate.cwiseAbs(), 5), *direction)); });
-  add("rate_dps", "a friction that differs with the direction", [direction, sampled] {
-    return sampled(columns_of({*direction, Eigen::VectorXd::Ones(direction->size())}));
+      [a, direction] { return sampled_directions(scaled(hats(a->rate.cwiseAbs(), 5), *direction)); });
+  add("rate_dps", "a friction that differs with the direction", [direction] {
+    return sampled_directions(columns_of({*direction, Eigen::VectorXd::Ones(direction->size())}));
   });
   add("rate_dps", "a friction that depends on rate and direction",
-      [a, sampled] { return sampled(hats(a->rate, 9)); });
+      [a] { return sampled_directions(hats(a->rate, 9)); });
   add(a->command_name(), "a friction that grows with the torque", [direction, drive_Nm] {
     return std::vector<Direction>{flow_held(direction->cwiseProduct(drive_Nm->cwiseAbs()))};
   });
   if (a->inputs().covariate_motor_C.size() > 0)
-    add("motor_C", "a friction that changes with the temperature", [a, direction, sampled] {
+    add("motor_C", "a friction that changes with the temperature", [a, direction] {
       // Grease thins by an exponential: over tens of degrees its curvature shows.
       const Eigen::VectorXd& motor_C = a->inputs().covariate_motor_C;
       const Eigen::VectorXd warmer = warmer_than_mean(motor_C);
       const Eigen::VectorXd z = warmer / std::max(warmer.cwiseAbs().maxCoeff(), 1e-12);
-      return sampled(columns_of({a->rate, a->rate.cwiseProduct(z), a->rate.cwiseProduct(z.cwiseAbs2()),
-                                 direction->cwiseProduct(z)}));
+      return sampled_directions(
+          columns_of({a->rate, a->rate.cwiseProduct(z), a->rate.cwiseProduct(z.cwiseAbs2()),
+                      direction->cwiseProduct(z)}));
     });
 }
 
@@ -188,9 +186,6 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
 /// The freedoms of angle, time and inertia.
 inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows>& a) {
   const Eigen::Index n = a->rate.size();
-  const auto sampled = [](const Eigen::MatrixXd& columns) {
-    return directions_of(columns, [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
-  };
   const auto add = [&](const std::string& variable, const std::string& words,
                        std::function<std::vector<Direction>()> directions) {
     b.freedoms.push_back(
@@ -199,19 +194,19 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
   if (a->has_angle) {
     const std::shared_ptr<Waves> waves = waves_of(a);
     add("angle_deg", "a torque with the sine of the angle",
-        [waves, sampled] { return sampled((*waves)(1.0)); });
-    add("angle_deg", "a torque in proportion to the angle", [a, n, sampled] {
-      return sampled(columns_of({a->angle, Eigen::VectorXd::Ones(n)}));
+        [waves] { return sampled_directions((*waves)(1.0)); });
+    add("angle_deg", "a torque in proportion to the angle", [a, n] {
+      return sampled_directions(columns_of({a->angle, Eigen::VectorXd::Ones(n)}));
     });
     add("angle_deg", "a torque that depends on the angle",
-        [a, sampled] { return sampled(even_hats(a->angle, 9)); });
+        [a] { return sampled_directions(even_hats(a->angle, 9)); });
     Freedom periodic{Submodel::mechanical_load, "angle_deg", "",
-                     [waves, sampled](double count) { return sampled((*waves)(count)); }};
+                     [waves](double count) { return sampled_directions((*waves)(count)); }};
     periodic.scan = repeats_per_turn(*a);
     periodic.words_at = [](double count) { return repeating("a torque", count); };
     if (!periodic.scan.empty()) b.freedoms.push_back(std::move(periodic));
   }
-  add("t_s", "a constant torque", [n, sampled] { return sampled(Eigen::VectorXd::Ones(n)); });
+  add("t_s", "a constant torque", [n] { return sampled_directions(Eigen::VectorXd::Ones(n)); });
   b.freedoms.push_back({Submodel::mechanical_structure, "acceleration_rad_per_s2", "another inertia",
                         [a](double) { return std::vector<Direction>{further_store(a->rate)}; }});
   // A second inertia that follows the measured motion through a spring.
@@ -347,10 +342,7 @@ inline Balance effort_balance(const std::shared_ptr<const AxisAtRows>& a) {
   };
   const auto add = [&](SubmodelName submodel, const std::string& variable, const std::string& words,
                        std::function<Eigen::MatrixXd()> columns) {
-    b.freedoms.push_back({std::move(submodel), variable, words, [columns](double) {
-                            return directions_of(
-                                columns(), [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
-                          }});
+    add_sampled_freedom(b, std::move(submodel), variable, words, std::move(columns));
   };
   add(Submodel::sensing_current, "", "the same offset at every current, none included",
       [n = in.rows()] { return Eigen::MatrixXd(Eigen::VectorXd::Ones(n)); });
@@ -411,8 +403,7 @@ inline Balance instrument_balance(const AxisAtRows& a) {
                         [rate_dps](double) { return std::vector<Direction>{flow_sampled(*rate_dps)}; }});
   Freedom off_centre{Submodel::sensing_angle, "angle_deg", "",
                      [rate_dps, waves = std::make_shared<Waves>(angle)](double count) {
-                       return directions_of(scaled((*waves)(count), *rate_dps),
-                                            [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
+                       return sampled_directions(scaled((*waves)(count), *rate_dps));
                      }};
   // A disc off its centre errs once a turn, an oval one twice, a magnet as often as it has pairs of poles.
   off_centre.scan = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};

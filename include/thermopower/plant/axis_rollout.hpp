@@ -84,20 +84,13 @@ public:
   /// The drive at a row under a command in A; of a motor at a voltage, the current at standstill.
   AxisDrive<Scalar> drive(const Scalar& command_A, Eigen::Index row, double t_s) const {
     const DriveTerms<Scalar> terms = drive_terms(command_A, row, t_s);
-    const double external_Nm = inputs_.torque_Nm.size() > 0 ? inputs_.torque_Nm[row] : 0.0;
-    AxisDrive<Scalar> drive{Scalar(terms.torque_constant_Nm_per_A * terms.drive_A), terms.motor_C,
-                            external_Nm};
-    if (instance_.voltage_driven)
-      drive.back_Nms_per_rad =
-          terms.torque_constant_Nm_per_A * terms.torque_constant_Nm_per_A / instance_.motor_ohm;
-    return drive;
+    return driven(terms, terms.drive_A, row);
   }
 
   /// The drive at a row under a measured current: what the drive's effects do to a current is in it.
   AxisDrive<Scalar> driven_by(double measured_A, Eigen::Index row, double t_s) const {
-    AxisDrive<Scalar> all = drive(constant<Scalar>(measured_A), row, t_s);
-    all.torque_Nm = drive_terms(constant<Scalar>(measured_A), row, t_s).torque_constant_Nm_per_A * measured_A;
-    return all;
+    const Scalar flows_A = constant<Scalar>(measured_A);
+    return driven(drive_terms(flows_A, row, t_s), flows_A, row);
   }
 
   /// The current that flows under a command, after the drive's effects: what an ammeter shows. A
@@ -151,6 +144,16 @@ private:
     terms.torque_constant_Nm_per_A = instance_.torque_constant_Nm_per_A;
     for (const auto& effect : instance_.drive) effect(terms);
     return terms;
+  }
+
+  /// The drive at a row. @param current_A  that flows
+  AxisDrive<Scalar> driven(const DriveTerms<Scalar>& terms, const Scalar& current_A, Eigen::Index row) const {
+    const double external_Nm = inputs_.torque_Nm.size() > 0 ? inputs_.torque_Nm[row] : 0.0;
+    AxisDrive<Scalar> drive{Scalar(terms.torque_constant_Nm_per_A * current_A), terms.motor_C, external_Nm};
+    if (instance_.voltage_driven)
+      drive.back_Nms_per_rad =
+          terms.torque_constant_Nm_per_A * terms.torque_constant_Nm_per_A / instance_.motor_ohm;
+    return drive;
   }
 
   /// The servo's command by the motion measured at row `i`, which is `row` or the next one, as the target of `row` goes on.

@@ -224,6 +224,20 @@ std::vector<Direction> directions_of(const Eigen::MatrixXd& columns, One&& one) 
   return list;
 }
 
+/// One direction per column, sampled at the rows.
+inline std::vector<Direction> sampled_directions(const Eigen::MatrixXd& columns) {
+  return directions_of(columns, [](Eigen::VectorXd column) { return flow_sampled(std::move(column)); });
+}
+
+/// Adds a freedom of a balance whose directions are columns that are made when asked for.
+/// @param variable  that it goes with; empty: with none
+inline void add_sampled_freedom(Balance& balance, SubmodelName submodel, const std::string& variable,
+                                const std::string& words, std::function<Eigen::MatrixXd()> columns) {
+  balance.freedoms.push_back({std::move(submodel), variable, words, [columns = std::move(columns)](double) {
+                                return sampled_directions(columns());
+                              }});
+}
+
 /// Directions of one part each, whose values are made one after the other, when asked for.
 /// @param kind   where they enter
 /// @param count  of them

@@ -71,10 +71,7 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
                            }});
   const auto add = [&](SubmodelName submodel, const std::string& variable, const std::string& words,
                        std::function<Eigen::MatrixXd()> columns) {
-    b.freedoms.push_back({std::move(submodel), variable, words, [columns](double) {
-                            return directions_of(
-                                columns(), [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
-                          }});
+    add_sampled_freedom(b, std::move(submodel), variable, words, std::move(columns));
   };
   add(Submodel::sensing_current, "", "the same offset at every current, none included",
       [n] { return Eigen::MatrixXd(Eigen::VectorXd::Ones(n)); });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/heater_loop.hpp>
@@ -133,6 +134,12 @@ inline Recording with_heater_duty(const Model& model, Recording recording) {
   }
   recording.set(engine::heater_power_column, std::move(power));
   return recording;
+}
+
+/// Takes the last part of a recording away as held-out data, with the duty of the model's heater loop, whose memory goes on there.
+inline std::pair<Recording, Recording> split(const Model& model, Recording recording,
+                                             double held_out_fraction) {
+  return split(with_heater_duty(model, std::move(recording)), held_out_fraction);
 }
 
 }  // namespace thermopower::gap

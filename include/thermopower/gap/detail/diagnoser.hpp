@@ -20,7 +20,6 @@
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/gap/data/heater_duty.hpp>
-#include <thermopower/gap/data/splitting.hpp>
 
 #include <algorithm>
 #include <array>
@@ -95,7 +94,7 @@ private:
       for (Recording& one : first) {
         if (const auto problem = one.validate())
           throw InvalidInput("recording '" + one.name + "': " + *problem);
-        auto parts = split(with_heater_duty(model_, std::move(one)), options_.held_out_fraction);
+        auto parts = split(model_, std::move(one), options_.held_out_fraction);
         one = std::move(parts.first);
         last.push_back(std::move(parts.second));
       }
