@@ -500,20 +500,6 @@ TEST_CASE("a coarse thermometer that stands longer than where it rests, and then
   CHECK(found(prepared, FindingKind::frozen_samples, "motor_C", FindingAction::masked) == stands);
 }
 
-TEST_CASE(
-    "what a command did around a turning point nobody tells, though both ends of the hole are the same") {
-  Recording r = axis();
-  Eigen::VectorXd drive(r.rows());
-  const Eigen::Index length = 16;
-  const bool turns = GENERATE(true, false);
-  for (Eigen::Index i = 0; i < r.rows(); ++i)
-    drive[i] = turns ? 0.1 * std::cos(0.03 * static_cast<double>(i - 1008)) : i / 400 % 2 == 0 ? 0.1 : -0.1;
-  for (Eigen::Index i = 1000; i < 1000 + length; ++i) drive[i] = missing;
-  r.set("drive_A", drive);
-  const PreparedRecording prepared(test::axis_model(), r);
-  CHECK(prepared.recording().rows() == (turns ? r.rows() - length : r.rows()));
-}
-
 TEST_CASE("a current that heats is unknown where its sensor's range ended") {
   Recording r = bench();
   r.remove("power_param");

@@ -300,21 +300,6 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
                 "give each swing a label in the column run");
 }
 
-/// How far an input that went on as it does beside a hole, the median of some steps there, would go until the hole's middle.
-/// The ends of a hole around a turning point are the same, and nothing stood still.
-inline double goes_on_by(const Eigen::VectorXd& values, const RunSpan& run, Eigen::Index row,
-                         Eigen::Index end) {
-  constexpr Eigen::Index beside = 5;  // steps: one jump among them does not count
-  const auto usual_step = [&](Eigen::Index from, Eigen::Index to) {
-    std::vector<double> steps;
-    for (Eigen::Index i = std::max(from, run.begin + 1); i < std::min(to, run.end); ++i)
-      if (std::isfinite(values[i] - values[i - 1])) steps.push_back(values[i] - values[i - 1]);
-    return std::abs(median_of(steps));
-  };
-  return 0.5 * static_cast<double>(end - row) *
-         std::max(usual_step(row - beside, row), usual_step(end + 1, end + 1 + beside));
-}
-
 /// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.
 /// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ; infinite: no hole
 ///                  matters
@@ -344,7 +329,7 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
       if (input.pace == InputPace::command)
         // What is off at one end only was switched in between.
         known = inside && end - row <= limit.held_rows && range.same(before, after) &&
-                (before == 0.0) == (after == 0.0) && range.same(0.0, goes_on_by(values, run, row, end));
+                (before == 0.0) == (after == 0.0);
       else
         known = (inside &&
                  (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
