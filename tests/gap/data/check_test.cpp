@@ -186,23 +186,6 @@ TEST_CASE("an output that stands still while its noise should show is masked fro
   CHECK(out.size() < static_cast<std::size_t>(to - from + 5));
 }
 
-TEST_CASE(
-    "an output that stood still when a run ended, and when the next one began, is masked from there on") {
-  Recording r = bench();
-  const Eigen::Index from = 680, next = 750, to = 800;
-  const double held = r.column("current_A")[from];
-  change(r, "current_A", [&](double x, Eigen::Index i) { return i >= from && i < to ? held : x; });
-  r.runs = {{0, next, "first"}, {next, r.rows(), "second"}};
-  for (Eigen::Index i = next; i < r.rows(); ++i) r.t_s[i] -= r.t_s[next - 1];
-  const PreparedRecording prepared(test::bench_model(), r);
-  const std::set<Eigen::Index> out = taken(r, prepared, "current_A");
-  for (Eigen::Index i = from + 1; i < to; ++i) {
-    CAPTURE(i);
-    CHECK(out.count(i) == 1);
-  }
-  CHECK(out.size() < static_cast<std::size_t>(to - from + 3));
-}
-
 TEST_CASE("a rate cut off at the end of its range is masked there") {
   Recording r = axis();
   const double limit = 0.7 * r.column("rate_dps").cwiseAbs().maxCoeff();
@@ -349,65 +332,6 @@ TEST_CASE(
   CHECK(out.size() < beyond.size() + 10);
 }
 
-TEST_CASE("a current in coarse steps that stands at its end while the power moves is cut off there") {
-  Recording r = bench();
-  const double quantum = r.column("current_A").maxCoeff() / 150.0;
-  change(r, "current_A", [&](double x, Eigen::Index) { return quantum * std::round(x / quantum); });
-  const Eigen::VectorXd whole = r.column("current_A");
-  const double limit = quantum * std::round(0.6 * whole.maxCoeff() / quantum);
-  const std::size_t cut = cut_off_above(r, "current_A", limit);
-  REQUIRE(cut > 100);
-  const PreparedRecording prepared(test::bench_model(), r);
-  CHECK(found(prepared, FindingKind::clipped_samples, "current_A", FindingAction::masked));
-  CHECK(taken(r, prepared, "current_A").size() >= cut);
-  // The same current without an end: under one power it stands still for longer than that.
-  Recording still = bench();
-  still.set("current_A", whole);
-  const PreparedRecording sound(test::bench_model(), still);
-  CHECK_FALSE(found(sound, FindingKind::clipped_samples, "current_A", FindingAction::masked));
-}
-
-TEST_CASE("where a column stands frozen at its end for most of the time, what it reads there is its limit") {
-  // A current in coarse steps that comes to its end six times, and stands there twice for long and else for four rows.
-  Recording r = bench();
-  const double quantum = r.column("current_A").maxCoeff() / 40.0, limit = quantum * 24.0;
-  test::Noise noise(5);
-  std::set<Eigen::Index> beyond;
-  change(r, "current_A", [&](double, Eigen::Index i) {
-    const Eigen::Index stretch = i / 75, length = stretch % 10 == 3 ? 60 : stretch % 5 == 0 ? 4 : 0;
-    const double wanted = i % 75 < length ? 27.0 : 12.0 + 3.0 * std::sin(0.02 * static_cast<double>(i));
-    const double steps = std::round(wanted + 0.6 * noise());
-    if (steps > 24.0) beyond.insert(i);
-    return std::min(quantum * steps, limit);
-  });
-  r.set("power_param", Eigen::VectorXd::Constant(r.rows(), 200.0));
-  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::bench_model(), r), "current_A");
-  CHECK(std::includes(out.begin(), out.end(), beyond.begin(), beyond.end()));
-  CHECK(out.size() <= beyond.size() + 3);
-}
-
-TEST_CASE(
-    "a range ends on both sides alike: where one end is proven, a rest out of range at the other is cut off, too") {
-  // An angle in fine steps that swings past one end, and rests beyond the other.
-  Recording r = axis();
-  const double limit = 30.0, step = 0.02;
-  Eigen::VectorXd angle(r.rows()), rate(r.rows());
-  double angle_deg = 0.0;
-  std::size_t beyond = 0;
-  for (Eigen::Index i = 0; i < r.rows(); ++i) {
-    const double dps = i < 300 ? 12.0 : i < 600 ? -12.0 : i < 950 ? -10.0 : i < 2600 ? 0.0 : 10.0;
-    if (i > 0) angle_deg += dps * (r.t_s[i] - r.t_s[i - 1]);
-    beyond += std::abs(angle_deg) > limit ? 1 : 0;
-    angle[i] = std::clamp(step * std::round(angle_deg / step), -limit, limit);
-    rate[i] = dps;
-  }
-  REQUIRE(beyond > 1650);
-  r.set("angle_deg", angle);
-  r.set("rate_dps", rate);
-  const PreparedRecording prepared(test::axis_model(), r);
-  CHECK(taken(r, prepared, "angle_deg").size() >= beyond);
-}
-
 TEST_CASE("a fine thermometer that stands at its end for most of a recording is cut off there, not at rest") {
   Recording r = bench();
   test::Noise noise(5);
@@ -419,22 +343,6 @@ TEST_CASE("a fine thermometer that stands at its end for most of a recording is 
   r.set("motor_C", whole.cwiseMin(limit));
   const PreparedRecording prepared(test::bench_model(), r);
   CHECK(found(prepared, FindingKind::clipped_samples, "motor_C", FindingAction::masked));
-}
-
-TEST_CASE("a limit of three samples between two steps of a rate is one on both sides") {
-  Recording r = axis();
-  const double quantum = 0.1, limit = 0.97 * r.column("rate_dps").cwiseAbs().maxCoeff();
-  const double between = quantum * (std::floor(limit / quantum) + 0.4);
-  std::size_t cut = 0;
-  change(r, "rate_dps", [&](double x, Eigen::Index) {
-    const double coarse = quantum * std::round(x / quantum);
-    cut += std::abs(coarse) > between ? 1 : 0;
-    return std::clamp(coarse, -between, between);
-  });
-  REQUIRE(cut > 1);
-  REQUIRE(cut < 60);
-  const PreparedRecording prepared(test::axis_model(), r);
-  CHECK(taken(r, prepared, "rate_dps").size() >= cut);
 }
 
 TEST_CASE("a coarse rate that stands while its angle goes elsewhere is frozen") {

@@ -65,7 +65,6 @@ struct ColumnTraits {
       nullptr;  ///< a column that is 0 while this one may stand still (the rate of an angle)
   const Eigen::VectorXd* integral = nullptr;  ///< a column that moves on by this one (the angle of a rate)
   const Eigen::VectorXd* t_s = nullptr;       ///< stamps, where `integral` or `at_rest` is given
-  const Eigen::VectorXd* driver = nullptr;    ///< a column that this one rises with (the power of a current)
 };
 
 }  // namespace thermopower::gap::engine

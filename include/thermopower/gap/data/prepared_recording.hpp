@@ -348,13 +348,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
     list.add_rows(FindingKind::glitched_samples, Severity::warning, name, lost, FindingAction::masked,
                   "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
   }
-  RowMask spikes = masks.spikes();
-  const RowMask bursts = masks.bursts();
-  if (std::find(bursts.begin(), bursts.end(), 1) != bursts.end()) {
-    // Next to a burst a spike does not stand out.
-    const RowMask hidden = masks.spikes();
-    for (std::size_t i = 0; i < spikes.size(); ++i) spikes[i] |= hidden[i];
-  }
+  const RowMask spikes = masks.spikes(), bursts = masks.bursts();
   take_away(values, spikes);
   list.add_rows(FindingKind::spiked_samples, Severity::note, name, spikes, FindingAction::masked,
                 "lie far from all around them");
@@ -362,7 +356,6 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   list.add_rows(FindingKind::glitched_samples, Severity::warning, name, bursts, FindingAction::masked,
                 "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
   traits.begins_with_a_step = false;
-  traits.driver = power;
   {
     SampleMasks still(values, runs, traits);
     // First: all but the first sample of a clipped stretch look frozen.

@@ -59,10 +59,9 @@ public:
   /// Isolated samples (one, or two of five) far from all around them.
   RowMask spikes() {
     if (!holds(Rule::outlier_rejection)) return empty();
-    if (!spikes_)
-      spikes_.emplace(values_, runs_, traits_, scale_, quantum_,
-                      traits_.integral != nullptr ? position_step() : 0.0);
-    RowMask mask = spikes_->find(values_);
+    RowMask mask =
+        Spikes(values_, runs_, traits_, scale_, quantum_, traits_.integral != nullptr ? position_step() : 0.0)
+            .find(values_);
     take(mask);
     return mask;
   }
@@ -105,13 +104,10 @@ public:
     return mask;
   }
 
-  /// Stretches of one value where noise or motion would show: all but their first row, and that one, too, where the column stood
-  /// there already when the run before it ended; every sample of the largest or the least value, where that stands so for most
-  /// of its time, since the range ends there.
+  /// Stretches of one value where noise or motion would show: all but their first row.
   RowMask frozen() {
     RowMask mask = empty();
     if (!holds(Rule::frozen)) return mask;
-    double stood_at = missing;  // at the end of the run before
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       std::vector<Eigen::Index> rows = finite_rows(runs_[r]);
       // A temperature does not jump while the logger pauses, either.
@@ -123,33 +119,24 @@ public:
         std::size_t end = begin + 1;
         while (end < rows.size() && values_[rows[end]] == values_[rows[begin]]) ++end;
         const bool frozen = is_frozen(rows, begin, end);
-        const bool goes_on =
-            begin == 0 && values_[rows[begin]] == stood_at && equal_share_ < limit_.rarely_equal;
-        for (std::size_t k = goes_on ? begin : begin + 1; k < end && (frozen || goes_on); ++k)
-          mask[static_cast<std::size_t>(rows[k])] = 1;
-        if (end == rows.size()) stood_at = frozen || goes_on ? values_[rows[begin]] : missing;
+        for (std::size_t k = begin + 1; k < end && frozen; ++k) mask[static_cast<std::size_t>(rows[k])] = 1;
         begin = end;
       }
     }
-    add_ends(mask);
     take(mask);
     return mask;
   }
 
-  /// Samples at the largest or the least value, where far more stand there than next to it, or that is none of the steps the
-  /// other samples come in. A range ends at the same magnitude on both sides: what one side proves, the other need not.
+  /// Samples at the largest or the least value, where far more stand there than next to it.
   RowMask clipped() {
     RowMask mask = empty();
     if (!holds(Rule::clipping)) return mask;
     const std::vector<double> list = finite_samples(values_);
     if (list.size() < 50) return mask;
-    const std::array<Extreme, 2> ends{extreme_of(list, true), extreme_of(list, false)};
-    const bool is_mirrored = ends[0].value == -ends[1].value;
-    const std::array<bool, 2> proven{is_clipped(ends[0]), is_clipped(ends[1])};
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (!proven[k] && !(is_mirrored && proven[1 - k])) continue;
+    for (const Extreme& one : {extreme_of(list, true), extreme_of(list, false)}) {
+      if (!is_clipped(one)) continue;
       for (Eigen::Index i = 0; i < values_.size(); ++i)
-        if (values_[i] == ends[k].value) mask[static_cast<std::size_t>(i)] = 1;
+        if (values_[i] == one.value) mask[static_cast<std::size_t>(i)] = 1;
     }
     take(mask);
     return mask;
@@ -164,21 +151,6 @@ private:
     const double step = values_[rows[i]] - values_[rows[i - 1]],
                  before = values_[rows[i - 1]] - values_[rows[i - 2]];
     return before * step > 0.0 && std::abs(before) > limit_.on_a_slope * std::abs(step);
-  }
-
-  /// Adds the other samples of an extreme that most of all its samples in a mask have.
-  void add_ends(RowMask& mask) const {
-    if (traits_.cannot_jump) return;  // a temperature nears its end slowly, and reads it for long
-    if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return;
-    const std::vector<double> list = finite_samples(values_);
-    for (const Extreme& one : {extreme_of(list, true), extreme_of(list, false)}) {
-      if (one.value == 0.0 || one.count < limit_.least_clipped) continue;
-      std::ptrdiff_t masked = 0;
-      for (Eigen::Index i = 0; i < values_.size(); ++i)
-        masked += values_[i] == one.value && mask[static_cast<std::size_t>(i)] != 0 ? 1 : 0;
-      for (Eigen::Index i = 0; 2 * masked > one.count && i < values_.size(); ++i)
-        if (values_[i] == one.value) mask[static_cast<std::size_t>(i)] = 1;
-    }
   }
 
   std::vector<Eigen::Index> finite_rows(const RunSpan& run) const {
@@ -196,11 +168,10 @@ private:
     // A sensor that has more to tell stays at its end; what returns there for one row at a time is the beat of a clock and a
     // steady motion.
     if (!piles_up(one) || !stays_at(one)) return false;
-    // A slow signal in coarse steps stands still by itself; but not where what drives it moves, nor where another column
-    // sees it move.
+    // A slow signal in coarse steps stands still by itself; but not where another column sees it move.
     const bool is_witnessed = traits_.integral != nullptr || traits_.at_rest != nullptr;
     const bool stands_still = stands_still_besides(one.value);
-    if (!is_witnessed && stands_still && !is_driven_at(one.value)) return false;
+    if (!is_witnessed && stands_still) return false;
     // One sample tells little: just at the end of its range a sensor is still right. Where noise of
     // many steps shows everywhere else, it would show there, though the axis rests out of range.
     const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still && !rests_at(one.value);
@@ -271,18 +242,6 @@ private:
     const bool may_rest =
         traits_.cannot_jump && !(white_scale(others, runs_) > limit_.quanta * quantum_of(others));
     return !((may_rest ? equal_share_ : equal_share_of(step_sizes(others, runs_))) < limit_.hardly_equal);
-  }
-
-  /// Whether the column's driver moves, where the column has this value, by more than some steps of the column's.
-  bool is_driven_at(double value) const {
-    if (traits_.driver == nullptr) return false;
-    std::vector<double> all = finite_samples(values_), driver = finite_samples(*traits_.driver), here;
-    for (Eigen::Index i = 0; i < values_.size(); ++i)
-      if (values_[i] == value && std::isfinite((*traits_.driver)[i])) here.push_back((*traits_.driver)[i]);
-    if (here.empty()) return false;
-    const auto range = [](std::vector<double>& of) { return quantile_of(of, 0.95) - quantile_of(of, 0.05); };
-    const double whole = range(driver);
-    return whole > 0.0 && range(here) / whole * range(all) > limit_.quanta * quantum_;
   }
 
   /// Noise that shows everywhere, where the column moves least, too. A joint that comes to rest without noise stands as well as a
@@ -509,7 +468,6 @@ private:
   Eigen::VectorXd values_;
   const std::vector<RunSpan>& runs_;
   ColumnTraits traits_;
-  std::optional<Spikes> spikes_;  // which remember what the column was before samples were taken away
   double quantum_ = 0.0, scale_ = 0.0, usual_step_ = 0.0, equal_share_ = 0.0;
   mutable double rest_rate_ = -1.0, other_equal_share_ = -1.0, position_quantum_ = -1.0, quiet_scale_ = -1.0;
 };
