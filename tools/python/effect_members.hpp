@@ -131,6 +131,20 @@ void visit(plant::AxisReadings<Scalar>& terms, Visitor&& with) {
   with.to_change("angle_deg", terms.angle_deg), with.to_change("rate_dps", terms.rate_dps);
 }
 
+/// Whether an effect may have states of its own at a place.
+template <class Terms>
+inline constexpr bool has_states = false;
+template <class Scalar>
+inline constexpr bool has_states<plant::AxisTerms<Scalar>> = true;
+template <class Scalar>
+inline constexpr bool has_states<plant::FrictionTerms<Scalar>> = true;
+
+/// Whether it may add dry friction there.
+template <class Terms>
+inline constexpr bool has_friction = false;
+template <class Scalar>
+inline constexpr bool has_friction<plant::FrictionTerms<Scalar>> = true;
+
 /// A Python object that may be let go by any thread.
 using Shared = std::shared_ptr<py::object>;
 
@@ -162,13 +176,13 @@ class EffectMembers {
 public:
   /// Called with the Python lock. @param terms  of that place; their values do not matter
   template <class Terms>
-  EffectMembers(const plant::EffectInfo& info, Terms& terms, bool has_states, bool has_friction)
+  EffectMembers(const plant::EffectInfo& info, Terms& terms)
       : id_(info.id),
-        adds_friction_(has_friction),
+        adds_friction_(has_friction<Terms>),
         fresh_(shared(py::module_::import("types").attr("SimpleNamespace"))) {
     for (const plant::Parameter& one : info.parameters) parameters_.push_back(one.name);
     visit(terms, Names{members_});
-    if (has_states)
+    if (has_states<Terms>)
       for (const auto& one : info.states) states_.push_back(one.name);
   }
 

@@ -124,11 +124,6 @@ public:
 
 private:
   template <class Terms>
-  static constexpr bool has_states =
-      std::is_same_v<Terms, plant::AxisTerms<Scalar>> || std::is_same_v<Terms, plant::FrictionTerms<Scalar>>;
-  template <class Terms>
-  static constexpr bool has_friction = std::is_same_v<Terms, plant::FrictionTerms<Scalar>>;
-  template <class Terms>
   static constexpr bool is_structure = std::is_same_v<Terms, plant::ThermalStructure<Scalar>> ||
                                        std::is_same_v<Terms, plant::AxisStructure<Scalar>>;
 
@@ -269,13 +264,12 @@ inline plant::EffectInfo info_of(const py::dict& given) {
 inline bool trace(const plant::EffectInfo& info, Acts& acts) {
   using Number = plant::Expression;
   bool all = true;
-  const auto find = [&](Act& act, auto&& terms, bool has_states = false, bool has_friction = false) {
-    if (act.function)
-      act.members = std::make_shared<const EffectMembers>(info, terms, has_states, has_friction);
+  const auto find = [&](Act& act, auto&& terms) {
+    if (act.function) act.members = std::make_shared<const EffectMembers>(info, terms);
     return act.function != nullptr;
   };
-  const auto follow = [&](Act& act, auto&& terms, bool has_states = false, bool has_friction = false) {
-    if (!find(act, terms, has_states, has_friction)) return;
+  const auto follow = [&](Act& act, auto&& terms) {
+    if (!find(act, terms)) return;
     act.traced = TracedFunction::of(*act.function, *act.members);
     all = all && act.traced != nullptr;
   };
@@ -288,8 +282,8 @@ inline bool trace(const plant::EffectInfo& info, Acts& acts) {
   follow(acts.thermal, plant::ThermalTerms<Number>());
   follow(acts.bench_readings, plant::BenchReadings<Number>());
   follow(acts.drive, plant::DriveTerms<Number>());
-  follow(acts.axis, plant::AxisTerms<Number>{given, none, none, none, none, none}, true);
-  follow(acts.friction, plant::FrictionTerms<Number>(given, given, none, none, none, none), true, true);
+  follow(acts.axis, plant::AxisTerms<Number>{given, none, none, none, none, none});
+  follow(acts.friction, plant::FrictionTerms<Number>(given, given, none, none, none, none));
   follow(acts.axis_readings, plant::AxisReadings<Number>());
   return all;
 }

@@ -11,10 +11,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -61,7 +59,7 @@ public:
     if (!holds(Rule::outlier_rejection)) return empty();
     RowMask mask =
         Spikes(values_, runs_, traits_, scale_, quantum_, traits_.integral != nullptr ? position_step() : 0.0)
-            .find(values_);
+            .find();
     take(mask);
     return mask;
   }
@@ -127,7 +125,8 @@ public:
     return mask;
   }
 
-  /// Samples at the largest or the least value, where far more stand there than next to it.
+  /// Samples at the largest or the least value, where far more stand there than next to it, or that is none of the steps the
+  /// other samples come in.
   RowMask clipped() {
     RowMask mask = empty();
     if (!holds(Rule::clipping)) return mask;

@@ -24,14 +24,19 @@ namespace thermopower::gap::engine {
 /// Finds spikes in one column.
 class Spikes {
 public:
-  /// @param values  of the column, NaN where missing
-  /// @param runs    inside which rows follow on each other; they outlive this
+  /// @param values  of the column, NaN where missing; they outlive this
+  /// @param runs    inside which rows follow on each other; they, too
   /// @param scale   noise scale of the column (white_scale())
   /// @param quantum of the column
   /// @param position_step  quantum and noise of the column that this one is the rate of, where there is one
   Spikes(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs, const ColumnTraits& traits,
          double scale, double quantum, double position_step)
-      : runs_(runs), traits_(traits), quantum_(quantum), scale_(scale), position_step_(position_step) {
+      : values_(values),
+        runs_(runs),
+        traits_(traits),
+        quantum_(quantum),
+        scale_(scale),
+        position_step_(position_step) {
     constexpr double few_digits = 0.01;  // 360/16384 deg with four decimals comes as 0.0219 and 0.0220
     const double coarsest = std::max(quantum, repeated_step(values, few_digits));
     motion_ = MotionSpikes(values, traits.t_s, runs, coarsest);
@@ -40,9 +45,8 @@ public:
   }
 
   /// Isolated samples, or two of five, that lie far from all around them.
-  /// @param values  of the column, without what was masked so far
-  RowMask find(Eigen::VectorXd values) const {
-    assert(values.size() == static_cast<Eigen::Index>(median_confirmed_.size()));
+  RowMask find() const {
+    Eigen::VectorXd values = values_;
     RowMask mask(static_cast<std::size_t>(values.size()), 0);
     for (int pass = 0; pass < 4; ++pass) {  // a tenth of bad rows puts three of five together now and then
       RowMask found(mask.size(), 0);
@@ -212,6 +216,7 @@ private:
   }
 
   static constexpr MaskThresholds limit_{};
+  const Eigen::VectorXd& values_;
   const std::vector<RunSpan>& runs_;
   ColumnTraits traits_;
   double quantum_, scale_, position_step_;
