@@ -148,9 +148,6 @@ struct Parameter {
   double periods_in_travel = 0.0;
   /// A rate that the motion must reach: beyond its fastest nothing shows it, and a fit that ends there explains nothing.
   bool within_the_motion = false;
-  /// Id of a constant of the model (`torque_constant`) that does the same where it moves: beside the effect's other parameters
-  /// the data tell this one only as well as that constant is known. Empty, or an id that a model has not: none.
-  std::string told_by_constant = {};
   /// The data give it its value, and it is not fitted: an end of the range of a curve (CurveShape).
   bool given_by_data = false;
   int index = -1;  ///< by which the effect reads it; -1: unchecked, it is read in the order of the list
@@ -192,7 +189,6 @@ public:
   /// A rate that the motion must reach.
   ParameterBuilder& within_the_motion() { return parameter_.within_the_motion = true, *this; }
   /// A constant of the model that does the same where it moves, by its id.
-  ParameterBuilder& told_by_constant(std::string_view id) { return parameter_.told_by_constant = id, *this; }
   /// It counts periods in the angle, and so many must lie within the recorded travel.
   ParameterBuilder& periods_in_travel(double least) { return parameter_.periods_in_travel = least, *this; }
   /// It stays at its standard until the effect without it leaves what it takes away.

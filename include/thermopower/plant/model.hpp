@@ -285,6 +285,10 @@ struct Model {
   /// The same of the transition of a friction: whoever wrote it down meant small.
   static constexpr double transition_known_to = 1.0;
 
+  /// Time in which the body's temperature comes to within 1/e of where it goes, s, > 0; infinite where the model has no thermal
+  /// block.
+  double time_constant_s() const;
+
   /// The first fault, with the field and the expected value, or nothing. Effects are not looked into: the catalogue knows
   /// them.
   std::optional<std::string> validate() const;

@@ -6,10 +6,12 @@
 #include "coloured_noise.hpp"
 
 #include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/report/noise_of_errors.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 using namespace thermopower::gap;
@@ -76,6 +78,37 @@ TEST_CASE("the error of a wrong model is no noise") {
   CHECK(with(0.0, [](int i) { return 5.0 * std::sin(0.05 * i); }) == Approx(1.0).epsilon(0.2));
   CHECK(with(0.0, [](int i) { return 8.0 * std::exp(-(i % 200) / 60.0); }) == Approx(1.0).epsilon(0.2));
   CHECK(with(0.95, [](int i) { return 5.0 * std::sin(0.02 * i); }) == Approx(1.0).epsilon(0.25));
+}
+
+TEST_CASE("what remembers longer than noise can is none, and what remembers as long is noise") {
+  Random random(7);
+  const std::vector<double> x = coloured(4000, 0.9, random);
+  const std::vector<bool> gaps(x.size(), false);
+  MostNoise short_memory, long_memory;
+  short_memory.longest_memory = 0.5;
+  long_memory.longest_memory = 0.92;
+  CHECK(noise_sd(x, gaps, 0.0, {}, {}, long_memory) == Approx(1.0).epsilon(0.2));
+  // What is new in each sample is noise at most: sqrt(1 - 0.9^2).
+  CHECK(noise_sd(x, gaps, 0.0, {}, {}, short_memory) < 0.5);
+}
+
+TEST_CASE("noise of a thermometer is forgotten within a quarter of its body's time constant") {
+  constexpr auto motor_C = static_cast<std::size_t>(Signal::motor_C);
+  Inputs inputs;
+  inputs.t_s = Eigen::VectorXd::LinSpaced(11, 0.0, 100.0);
+  Segment segment;
+  segment.inputs = &inputs;
+  Errors errors;
+  for (Eigen::Index row = 0; row < 11; ++row) {
+    errors.row[motor_C].push_back(row);
+    errors.segment[motor_C].push_back(0);
+  }
+  errors.time_constant_s = 40.0;
+  CHECK(memory_beside_body(errors, {segment}) == Approx(std::exp(-1.0)));
+  CHECK(most_noise_of(Signal::motor_C, errors, {segment}, {}).longest_memory == Approx(std::exp(-1.0)));
+  CHECK(most_noise_of(Signal::current_A, errors, {segment}, {}).longest_memory == 1.0);
+  errors.time_constant_s = std::numeric_limits<double>::infinity();  // no body is simulated
+  CHECK(most_noise_of(Signal::motor_C, errors, {segment}, {}).longest_memory == 1.0);
 }
 
 TEST_CASE("runs may differ in their noise, and readings in coarse steps have the noise of rounding, too") {

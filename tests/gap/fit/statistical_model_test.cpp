@@ -58,15 +58,32 @@ TEST_CASE("odds are no larger than the standard error of a difference allows") {
   CHECK(log_odds(0.0, 1.0) == 0.0);
 }
 
-TEST_CASE(
-    "a parameter costs the more the more samples count, and beside a constant what the constant would") {
-  CHECK(price_of_parameter(std::exp(9.0)) == Approx(9.0));
-  CHECK(price_of_parameter(0.0) == Approx(std::log(2.0)));
-  // Cauchy's density at its centre is 1 / (pi sd). A range as wide as its inverse says no more than the constant.
-  const double pi = 3.14159265358979, sd = 0.05;
-  CHECK(price_beside_constant(pi * sd, {sd}, 9.0) == Approx(0.0).margin(1e-6));
-  CHECK(price_beside_constant(pi * sd * std::exp(2.0), {sd}, 9.0) == Approx(4.0).epsilon(1e-6));
-  CHECK(price_beside_constant(1.0, {1e-9}, 9.0) == 9.0);
+TEST_CASE("a parameter costs what the data tell of it, and at most the logarithm of the samples") {
+  CHECK(most_price_of_parameter(std::exp(9.0)) == Approx(9.0));
+  CHECK(most_price_of_parameter(0.0) == Approx(std::log(2.0)));
+  // A range of 10 that the data narrow to a standard deviation of 0.1: the integral of the normal distribution over the range,
+  // divided by the range, is what the evidence loses beside the best fit.
+  const double pi = 3.14159265358979, sd = 0.1, range = 10.0;
+  const double share = std::sqrt(2.0 * pi) * sd / range;
+  CHECK(price_of_parameter({range}, 1.0 / (sd * sd), 99.0) == Approx(-2.0 * std::log(share)));
+  CHECK(price_of_parameter({range}, 1.0 / (sd * sd), 5.0) == 5.0);
+  CHECK(price_of_parameter({range}, 0.0, 9.0) == 0.0);       // not told
+  CHECK(price_of_parameter({range, 4.0}, 4.0, 9.0) == 0.0);  // told by what was known alone
+  CHECK(price_of_parameter({range, 4.0}, 4.0 * std::exp(2.0), 9.0) == Approx(2.0));
+}
+
+TEST_CASE("parameters that the data tell together only are paid for once") {
+  // Of a curvature with the same pull on both, the second one adds nothing to the first; the product is the determinant.
+  Candidate candidate;
+  candidate.list.resize(2);
+  candidate.fit.information = Eigen::MatrixXd::Constant(2, 2, 8.0);
+  CHECK(precisions(candidate, {0, 1}, 2.0) == std::vector<double>{4.0, 0.0});
+  CHECK(precisions(candidate, {1, 0}, 2.0) == std::vector<double>{0.0, 4.0});
+  candidate.fit.information(1, 1) = 10.0;
+  const std::vector<double> told = precisions(candidate, {1, 0}, 1.0);
+  CHECK(told[0] * told[1] == Approx(candidate.fit.information.determinant()));
+  candidate.fit.information.resize(0, 0);  // nobody looked
+  CHECK(precisions(candidate, {0, 1}, 1.0).empty());
 }
 
 TEST_CASE("a cause of which nothing is said is one in twenty, wherever it is asked") {

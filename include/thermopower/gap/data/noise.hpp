@@ -55,6 +55,7 @@ struct MostNoise {
     std::array<double, noise_memories.size()> of_noise{};  ///< that noise of variance 1 adds, by its memory
   };
   std::vector<Stretch> stretches;  ///< none: nothing is known
+  double longest_memory = 1.0;     ///< from one sample to the next, 0..1; noise that remembers longer is none
 
   /// Variance of noise of a memory beside white noise, at most; infinite where nothing is known.
   double beside(double white, std::size_t memory) const {
@@ -177,7 +178,8 @@ inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
   errors.push_back(shape([](double lag) { return lag; }));
   const Eigen::VectorXd wanted = shape([&, i = std::size_t{0}](double) mutable { return variogram[i++]; });
   std::vector<double> costs, variances, alike;
-  for (std::size_t k = 0; k < noises.size(); ++k)
+  for (std::size_t k = 0; k < noises.size(); ++k) {
+    if (k > 0 && noise_memories[k] > most.longest_memory) continue;
     for (std::size_t e = 0; e <= errors.size(); ++e) {
       const Eigen::VectorXd none = Eigen::VectorXd::Zero(rows);
       const Eigen::MatrixXd columns =
@@ -195,6 +197,7 @@ inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
                    square = noise_memories[k] * noise_memories[k];
       alike.push_back(1.0 + 2.0 * remembered * remembered * square / (1.0 - square));
     }
+  }
   const double least = *std::min_element(costs.begin(), costs.end());
   VariogramNoise noise;
   double total = 0.0;

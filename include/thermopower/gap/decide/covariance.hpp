@@ -68,10 +68,7 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
     if (fit.priors[k] > 0.0) by_priors += fit.priors[k] * inverse.col(k) * inverse.col(k).transpose();
   const Eigen::MatrixXd by_noise = inverse - by_priors;
   by_priors *= fit.per_prior;
-  double inflation = 1.0;
-  for (std::size_t i = 0; i < signal_count; ++i)
-    if (candidate.train.samples[i] > 0.0)
-      inflation = std::max(inflation, candidate.train.mean(i) * weight.correlation[i]);
+  const double inflation = inflation_of(candidate, weight);
   const double blocks = static_cast<double>(fit.pulls.cols()),
                free = blocks - static_cast<double>(candidate.list.size());
   Covariance covariance;
@@ -122,15 +119,14 @@ inline bool was_looked_for(const Parameter& parameter, const Coordinate& one) {
   return !parameter.standard && !one.still;
 }
 
-/// Marks sets of causes of which one may be absent. The 95 % intervals of all its sizes hold the value without it, or it is
-/// no more than a constant that moved. Two that do the same from opposite sides (a friction that differs by direction, and
+/// Marks explanations of which a cause may be absent. The 95 % intervals of all its sizes hold the value without it, the data tell
+/// none of its parameters, or it is no more than a constant that moved. Two that do the same from opposite sides (a friction that differs by direction, and
 /// a constant torque) are told by their sum alone. Parameters that are known by their order of magnitude, and details of a
 /// shape, are not asked. An interval is one of a valley that is straight. If the set without the cause was fitted and is
 /// far behind, the cause is there, whatever the length of the valley along which it trades with a constant.
 inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model, const Weight& weight) {
-  const auto misfit = [&](const Candidate& one) {
-    return misfit_of(one.train, weight.correlation) + misfit_of(one.held_out, weight.held_out);
-  };
+  // On held-out data a start that nobody measures may do what a cause does not.
+  const auto misfit = [&](const Candidate& one) { return misfit_of(one.train, weight.correlation); };
   const auto is_missed = [&](const Candidate& set, const CatalogueEntry* entry) {
     return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& part) {
       return part.held_out.any() && part.explanation.size() + 1 == set.explanation.size() &&
@@ -142,22 +138,25 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
   };
   for (Candidate& one : candidates) {
     one.doubtful = false;
-    if (one.explanation.effects.size() < 2 || !one.held_out.any()) continue;
+    if (one.explanation.effects.empty() || !one.held_out.any()) continue;
     const Covariance covariance = covariance_of(one, weight);
     if (covariance.of.size() == 0) continue;
     std::size_t at = model.calibrated().size();
     for (const CatalogueEntry* entry : one.explanation.effects) {
       const SpecialCase in_fact = special_case(one, entry->info, at);
-      bool has_a_size = false, is_there = false;
+      bool has_a_size = false, is_there = false, is_told = false;
       for (const Parameter& parameter : entry->info.parameters) {
         const std::size_t place = at++;
-        if (!was_looked_for(parameter, one.list[place]) || parameter.logarithmic) continue;
+        if (!was_looked_for(parameter, one.list[place])) continue;
         const Interval interval = interval_of(one, place, covariance);
+        is_told = is_told || is_narrower(interval, one.list[place]);
+        if (parameter.logarithmic) continue;
         has_a_size = true;
         is_there = is_there || parameter.absent_at < interval.low || parameter.absent_at > interval.high;
       }
       const bool is_a_constant = in_fact.the_same && plant::is_calibration(in_fact.cause);
-      one.doubtful = one.doubtful || is_a_constant || (has_a_size && !is_there && !is_missed(one, entry));
+      const bool may_be_absent = !is_told || (has_a_size && !is_there);
+      one.doubtful = one.doubtful || is_a_constant || (may_be_absent && !is_missed(one, entry));
     }
   }
 }

@@ -37,6 +37,16 @@ inline Weight correlation_of(const Candidate& candidate, const FitProblem& probl
   return weight;
 }
 
+/// How many times larger the variance of a candidate's parameters is than that of white noise of the problem's size: by the level of
+/// what it leaves, and by its correlation.
+inline double inflation_of(const Candidate& candidate, const Weight& weight) {
+  double inflation = 1.0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (candidate.train.samples[i] > 0.0)
+      inflation = std::max(inflation, candidate.train.mean(i) * weight.correlation[i]);
+  return inflation;
+}
+
 /// Geometric mean over the signals that have a correlation: residuals that count as one, 1 or more.
 inline double mean_correlation(const Weight& weight) {
   double product = 1.0, signals = 0.0;
@@ -406,8 +416,8 @@ inline double misfit_of(const Candidate& candidate) {
 /// judged on held-out data.
 ///
 /// The deviance is that of Gaussian residuals of unknown variance, over training and held-out data, with parameters from
-/// training alone. Samples are divided by the correlation length of the best candidate's residuals. Added are a Bayesian
-/// information penalty for every parameter, own state and start that nobody measures (cost_of_parameters()), the price of
+/// training alone. Samples are divided by the correlation length of the best candidate's residuals. Added are a
+/// penalty for every parameter, own state and start that nobody measures (cost_of_parameters()), the price of
 /// the constants that moved, and a penalty for every cause. A candidate that scores like the best is given its fit. Then
 /// only the penalties differ.
 ///
@@ -420,10 +430,14 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   double samples = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i)
     samples += candidates.front().train.samples[i] / weight.correlation[i];
+  std::vector<double> penalties;
+  for (const Candidate& one : candidates)
+    penalties.push_back(
+        cost_of_parameters(one, model, most_price_of_parameter(samples), inflation_of(one, weight)) +
+        usual_rarity * static_cast<double>(moved_constants(one, model).size()) + one.explanation.rarity() +
+        price_of_constants(one, model));
   const auto penalty = [&](const Candidate& one) {
-    return cost_of_parameters(one, model, price_of_parameter(samples)) +
-           usual_rarity * static_cast<double>(moved_constants(one, model).size()) + one.explanation.rarity() +
-           price_of_constants(one, model);
+    return penalties[static_cast<std::size_t>(&one - candidates.data())];
   };
   mark_idle(candidates);
   const Candidate* best = nullptr;

@@ -71,31 +71,65 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
   return price;
 }
 
-/// The price of a parameter where explanations are compared, twice a log odds: price_of_parameter(), or price_beside_constant() if a
-/// constant of the model does the same (Parameter::told_by_constant), and the data tell both together only.
-/// @param coordinate  the parameter's
-inline double cost_of_parameter(const plant::Parameter& parameter, const Coordinate& coordinate,
-                                const Model& model, double log_samples) {
-  if (!holds(Rule::parsimony)) return 0.0;
-  if (parameter.told_by_constant.empty()) return log_samples;
-  for (const CalibratedConstant& constant : model.calibrated())
-    if (constant.id == parameter.told_by_constant)
-      return price_beside_constant(coordinate.upper - coordinate.lower, Prior{model.uncertainty_of(constant)},
-                                   log_samples);
-  return log_samples;
+/// How well data and priors tell each coordinate of a candidate if all that are before it in an order are free, as inverse
+/// variances. Their product is the curvature's determinant, whatever the order.
+/// @param order        places of the candidate's coordinates
+/// @param counts_as_one  samples that do
+/// @return by place; empty where nobody looked at the curvature
+inline std::vector<double> precisions(const Candidate& candidate, const std::vector<std::size_t>& order,
+                                      double counts_as_one) {
+  const Eigen::MatrixXd& information = candidate.fit.information;
+  const std::size_t count = order.size();
+  if (information.rows() != static_cast<Eigen::Index>(count)) return {};
+  assert(counts_as_one > 0.0 && count == candidate.list.size());
+  // Cholesky's factor, row by row.
+  std::vector<double> precision(count, 0.0);
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(information.rows(), information.cols());
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = static_cast<Eigen::Index>(i), of = static_cast<Eigen::Index>(order[i]);
+    double left = information(of, of);
+    for (std::size_t k = 0; k < i; ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      if (!(factor(column, column) > 0.0)) continue;
+      double product = information(of, static_cast<Eigen::Index>(order[k]));
+      for (Eigen::Index j = 0; j < column; ++j) product -= factor(row, j) * factor(column, j);
+      factor(row, column) = product / factor(column, column);
+      left -= factor(row, column) * factor(row, column);
+    }
+    // What is left by rounding is nothing.
+    constexpr double rounding = 1e-12;
+    if (left > rounding * information(of, of)) factor(row, row) = std::sqrt(left);
+    precision[order[i]] = factor(row, row) * factor(row, row) / counts_as_one;
+  }
+  return precision;
 }
 
 /// The price of a candidate's free parameters, own states, and starts that nobody measures.
-inline double cost_of_parameters(const Candidate& candidate, const Model& model, double log_samples) {
-  double cost = candidate.hidden_starts * log_samples;
-  std::size_t at = model.calibrated().size();
+/// @param most           most_price_of_parameter(), which a state and a start cost, too
+/// @param counts_as_one  samples that do, for the curvature
+inline double cost_of_parameters(const Candidate& candidate, const Model& model, double most,
+                                 double counts_as_one) {
+  double cost = candidate.hidden_starts * most;
+  const std::size_t constants = model.calibrated().size();
+  // Constants are free in every explanation; the details of a shape are nobody's price.
+  std::vector<std::size_t> order, priced, details;
+  for (std::size_t i = 0; i < constants; ++i) order.push_back(i);
+  std::size_t at = constants;
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
-    cost += static_cast<double>(entry->info.states.size()) * log_samples;
-    for (const plant::Parameter& parameter : entry->info.parameters) {
-      const Coordinate& coordinate = candidate.list[at++];
-      if (candidate.explanation.counts(parameter))
-        cost += cost_of_parameter(parameter, coordinate, model, log_samples);
-    }
+    cost += static_cast<double>(entry->info.states.size()) * most;
+    for (const plant::Parameter& parameter : entry->info.parameters)
+      (candidate.explanation.counts(parameter) ? priced : details).push_back(at++);
+  }
+  if (!holds(Rule::parsimony)) return cost;
+  order.insert(order.end(), priced.begin(), priced.end());
+  order.insert(order.end(), details.begin(), details.end());
+  const std::vector<double> precision = precisions(candidate, order, counts_as_one);
+  if (precision.empty()) return cost + most * static_cast<double>(priced.size());
+  for (const std::size_t place : priced) {
+    const Coordinate& one = candidate.list[place];
+    const auto at = static_cast<Eigen::Index>(place);
+    const double own = at < candidate.fit.priors.size() ? candidate.fit.priors[at] / counts_as_one : 0.0;
+    cost += price_of_parameter({one.upper - one.lower, own}, precision[place], most);
   }
   return cost;
 }

@@ -107,12 +107,14 @@ struct FitProblem {
     }
   }
 
-  /// The measured values of a signal of an axis at the rows that have residuals. Averages are scaled to the noise of one
-  /// sample. Empty for other signals.
-  std::vector<double> measured_of_axis(Signal signal) const {
+  /// The measured values of a signal of an axis, or of a temperature, at the rows that have residuals. Averages are scaled to the
+  /// noise of one sample. Empty for other signals: they jump with what drives them.
+  std::vector<double> measured_where_smooth(Signal signal) const {
     std::vector<double> measured;
+    const bool is_of_a_body = signal == Signal::motor_C && std::isfinite(model->time_constant_s());
     for (const Segment& segment : segments) {
-      if (segment.warm_up || !segment.axis || !segment.inputs->judged(signal)) continue;
+      const bool is_smooth = segment.axis || is_of_a_body;
+      if (segment.warm_up || !is_smooth || !segment.inputs->judged(signal)) continue;
       // A log of an axis may hold its motor's temperature, which is judged in segments of its own.
       const std::vector<Signal>& signals = plant().signals(segment);
       if (std::find(signals.begin(), signals.end(), signal) == signals.end()) continue;

@@ -71,14 +71,6 @@ struct Prior {
     return (degrees + 1.0) * std::log1p(at * at / (degrees * sd * sd));
   }
 
-  /// How dense it is at its centre where explanations are compared, per unit of the coordinate: Cauchy's, of one degree of freedom.
-  /// Infinite where it is exact.
-  double density_at_centre() const {
-    static_assert(known_constants.degrees_of_freedom_of_price == 1.0,
-                  "another density goes with another price");
-    return 2.0 / (plant::rad_per_turn * sd);
-  }
-
   /// The weight w for which w at^2 / 2 has the gradient of half the cost. It is the inverse variance of a normal
   /// distribution with the same pull.
   double weight(double at) const {
@@ -123,19 +115,28 @@ inline double misfit(double samples, double correlated, double mean_square) {
 /// @name The price of freedom
 /// @{
 
-/// Twice the log odds that one free parameter costs: the logarithm of the samples that count (Schwarz 1978).
+/// Twice the log odds that one free parameter costs at most: the logarithm of the samples that count (Schwarz 1978).
 /// @param samples  that count as one, over all signals of the training data
-inline double price_of_parameter(double samples) {
+inline double most_price_of_parameter(double samples) {
   constexpr double least = 2.0;
   return std::log(std::max(samples, least));
 }
 
-/// The same of a parameter beside a constant of the model that does the same: the log odds of the constant's density at its centre
-/// against a parameter that may be anywhere in its range. It is nothing if the constant is known no better than that.
-/// @param range  of the parameter, in the constant's coordinate
-/// @param of_parameter  price_of_parameter(), which is the most
-inline double price_beside_constant(double range, const Prior& constant, double of_parameter) {
-  return std::min(2.0 * std::log(std::max(range * constant.density_at_centre(), 1.0)), of_parameter);
+/// What is known of a parameter before the data.
+struct ParameterPrior {
+  double range = 0.0;      ///< that it may be in, in its coordinate, > 0
+  double precision = 0.0;  ///< inverse variance of a prior of its own; 0: anywhere in the range is as likely
+};
+
+/// Twice the log odds that a free parameter costs (Laplace's approximation): the logarithm of the precision that the data give it, over
+/// the one that it has without them. What the data do not tell costs nothing, and gains nothing.
+/// @param precision  of the parameter with data and prior, others of the model left free
+/// @param most       most_price_of_parameter()
+inline double price_of_parameter(const ParameterPrior& prior, double precision, double most) {
+  // Of a range r the density is 1 / r, and a normal distribution of precision p has sqrt(p / 2 pi) at its top.
+  const double before =
+      prior.precision > 0.0 ? prior.precision : plant::rad_per_turn / (prior.range * prior.range);
+  return std::clamp(std::log(std::max(precision, 1e-300) / before), 0.0, most);
 }
 
 /// @}

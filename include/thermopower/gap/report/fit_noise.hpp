@@ -36,6 +36,7 @@ inline double most_noise(const FitProblem& problem, Signal signal) {
 /// one sample.
 inline Errors errors_left(const FitProblem& problem, const Candidate& candidate) {
   Errors left;
+  left.time_constant_s = problem.model->time_constant_s();
   problem.evaluate(candidate.explanation, candidate.list, candidate.fit.point, candidate.fit.starts, false,
                    [&](std::size_t segment, const FitProblem::Residuals& one) {
                      assert(one.signal.size() == one.row.size() &&
@@ -64,9 +65,9 @@ inline std::array<double, signal_count> noise_left(const FitProblem& problem, co
   assert(!problem.segments.empty());
   const bool is_averaged = problem.segments.front().inputs->repeats.size() > 0;
   const Errors left = errors_left(problem, candidate);
-  RateBesideAngle::Most most;
+  RateBesideAngle::Most of_motion;
   if (taken == TakenForNoise::what_differs && !is_averaged)
-    most = RateBesideAngle(left, problem.segments).most_noise();
+    of_motion = RateBesideAngle(left, problem.segments).most_noise();
   const std::array<double, signal_count> wander =
       wander_of_command(augmented(*problem.model, candidate.explanation, candidate.list, candidate.fit.point),
                         problem.segments, *problem.catalogue);
@@ -76,7 +77,8 @@ inline std::array<double, signal_count> noise_left(const FitProblem& problem, co
     const auto signal = static_cast<Signal>(i);
     const double quantum = is_averaged ? 0.0 : coarsest_quantum(recordings, signal),
                  sd = std::min(noise_sd(left.of[i], left.gaps(signal), quantum, {},
-                                        problem.measured_of_axis(signal), most.of(signal)),
+                                        problem.measured_where_smooth(signal),
+                                        most_noise_of(signal, left, problem.segments, of_motion)),
                                most_noise(problem, signal));
     sigma[i] = std::max(with_wander(sd, wander[i], left.rms(signal)), 1e-9);
   }

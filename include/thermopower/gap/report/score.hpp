@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct Errors {
   std::array<std::vector<int>, signal_count> segment;       ///< which segment each belongs to
   std::array<std::vector<double>, signal_count> simulated;  ///< simulated value, in the signal's unit
   std::array<std::vector<Eigen::Index>, signal_count> row;  ///< row in the recording of that segment
+  double time_constant_s =
+      std::numeric_limits<double>::infinity();  ///< of the simulated body; infinite: none is known
 
   /// Of each of a signal's errors whether it does not follow on the one before it: the first one of each segment.
   std::vector<bool> gaps(Signal signal) const {
@@ -42,6 +45,7 @@ struct Errors {
 inline Errors errors_of(const Model& model, const std::vector<Segment>& segments, const Catalogue& catalogue,
                         const std::array<double, signal_count>* sigma = nullptr) {
   Errors errors;
+  errors.time_constant_s = model.time_constant_s();
   const Plant& plant = plant_of(model);
   for (std::size_t i = 0; i < signal_count; ++i) {
     std::size_t rows = 0;

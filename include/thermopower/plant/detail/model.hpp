@@ -275,4 +275,13 @@ THERMOPOWER_GAP_INLINE double Model::uncertainty_of(const CalibratedConstant& co
   return constant.is_place ? place_known_to_rad : otherwise;
 }
 
+THERMOPOWER_GAP_INLINE double Model::time_constant_s() const {
+  constexpr double s_per_min = 60.0;
+  if (const auto* lumped = std::get_if<LumpedThermalModel>(&thermal))
+    return lumped->heat_capacity_J_per_K / lumped->conductance_W_per_K;
+  if (const auto* of_thesis = std::get_if<ThesisThermalModel>(&thermal))
+    return s_per_min / of_thesis->cooling_per_min;
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace thermopower::plant

@@ -45,8 +45,7 @@ struct DriveEfficiency {
              .unit("1")
              .within(0.05, 1.0)
              .starts({0.7})
-             .absent_at(1.0)
-             .told_by_constant("torque_constant"),
+             .absent_at(1.0),
          begun_once(friction_transition(transition)), begun_once(friction_tail(tail))},
         {Need::axis_model},
         "driving and braking in turn, under a load that is known"};
