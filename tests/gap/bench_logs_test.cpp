@@ -4,7 +4,7 @@
 // Temperatures as people log them: a power that is switched between the rows or written after its interval, rows ten
 // seconds apart, lines drawn between the readings. None of it is a gap, and none hides one.
 #include "../catch.hpp"
-#include "data/switched_bench.hpp"
+#include "observe/switched_bench.hpp"
 #include "plants.hpp"
 
 #include <thermopower/gap/diagnose.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 #include "../catch.hpp"
-#include "data/late_axis.hpp"
-#include "data/sampled_axis.hpp"
+#include "observe/late_axis.hpp"
+#include "observe/sampled_axis.hpp"
 #include "plants.hpp"
 
 #include <thermopower/gap/diagnose.hpp>

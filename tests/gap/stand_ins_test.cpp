@@ -3,7 +3,7 @@
 #include "../catch.hpp"
 #include "plants.hpp"
 
-#include <thermopower/gap/decide/covariance.hpp>
+#include <thermopower/gap/compare/covariance.hpp>
 #include <thermopower/gap/diagnose.hpp>
 #include <thermopower/gap/report/parts.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>

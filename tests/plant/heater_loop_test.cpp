@@ -6,7 +6,7 @@
 #include "../catch.hpp"
 #include "printer_loops.hpp"
 
-#include <thermopower/gap/data/heater_duty.hpp>
+#include <thermopower/gap/observe/heater_duty.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/plant/actuator_plant.hpp>

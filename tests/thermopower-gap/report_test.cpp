@@ -12,7 +12,7 @@
 #include "residual_statistics.hpp"
 #include <thermopower/io/summary.hpp>
 
-#include <thermopower/gap/localise/localisation.hpp>
+#include <thermopower/gap/where/localisation.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 

@@ -11,7 +11,7 @@
 #include "own_plant.hpp"
 
 #include <thermopower/gap.hpp>
-#include <thermopower/gap/data/heater_duty.hpp>
+#include <thermopower/gap/observe/heater_duty.hpp>
 #include <thermopower/design/design.hpp>
 #include <thermopower/io.hpp>
 #include <thermopower/io/design_files.hpp>

@@ -5,7 +5,7 @@
 #include "progress.hpp"
 
 #include <thermopower/gap.hpp>
-#include <thermopower/gap/data/heater_duty.hpp>
+#include <thermopower/gap/observe/heater_duty.hpp>
 #include <thermopower/io.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>

@@ -15,7 +15,7 @@
 #include <thermopower/io/report_json.hpp>
 #include <thermopower/io/summary.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
-#include <thermopower/gap/data/heater_duty.hpp>
+#include <thermopower/gap/observe/heater_duty.hpp>
 
 #include "../io-library/shell_words.hpp"
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/observe/prepared_recording.hpp>
 #include <thermopower/plant/catalogue.hpp>
 
 #include <vector>

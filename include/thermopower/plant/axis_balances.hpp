@@ -27,7 +27,7 @@
 
 namespace thermopower::plant {
 
-/// The variables of the freedoms of a moving axis. Held by tests/gap/localise/localisation_test.cpp and the rows "signal
+/// The variables of the freedoms of a moving axis. Held by tests/gap/where/localisation_test.cpp and the rows "signal
 /// and submodel right" of docs/reference/gap-benchmark.md (seed 20270221).
 struct AxisFreedomThresholds {
   double widest_rad = 0.5;      ///< angle over which a friction builds up, at most; shares of it by the next,

@@ -8,7 +8,7 @@
 #include "../plants.hpp"
 
 #include <thermopower/gap/check.hpp>
-#include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/observe/prepared_recording.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 

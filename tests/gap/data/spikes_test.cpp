@@ -7,7 +7,7 @@
 
 #include "../plants.hpp"
 
-#include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/observe/prepared_recording.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "../../catch.hpp"
 
 #include <thermopower/gap/check.hpp>
-#include <thermopower/gap/data/target_between_rows.hpp>
+#include <thermopower/gap/observe/target_between_rows.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include "../../catch.hpp"
 #include "../fixture.hpp"
 
-#include <thermopower/gap/decide/evidence.hpp>
+#include <thermopower/gap/compare/evidence.hpp>
 #include <thermopower/gap/fit/segment_choice.hpp>
 #include <thermopower/gap/fit/thinning.hpp>
 

@@ -6,7 +6,7 @@
 #include "../../catch.hpp"
 
 #include <thermopower/gap/compare/effort_lead.hpp>
-#include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/observe/prepared_recording.hpp>
 #include <thermopower/gap/propose/effort_problem.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 

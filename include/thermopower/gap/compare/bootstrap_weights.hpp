@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/report/score.hpp>
+#include <thermopower/gap/compare/score.hpp>
 
 #include <Eigen/Core>
 

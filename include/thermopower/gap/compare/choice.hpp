@@ -3,8 +3,8 @@
 #pragma once
 
 #include <thermopower/gap/data/sort_by.hpp>
-#include <thermopower/gap/decide/evidence.hpp>
-#include <thermopower/gap/decide/gap_taken.hpp>
+#include <thermopower/gap/compare/evidence.hpp>
+#include <thermopower/gap/compare/gap_taken.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 
 #include <algorithm>

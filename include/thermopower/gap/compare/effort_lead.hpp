@@ -8,7 +8,7 @@
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/explanation.hpp>
 #include <thermopower/gap/propose/effort_problem.hpp>
-#include <thermopower/gap/report/score.hpp>
+#include <thermopower/gap/compare/score.hpp>
 #include <thermopower/plant/signal.hpp>
 
 #include <algorithm>

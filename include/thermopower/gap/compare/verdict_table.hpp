@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/diagnosis.hpp>
-#include <thermopower/gap/report/score.hpp>
+#include <thermopower/gap/compare/score.hpp>
 
 #include <algorithm>
 #include <cassert>

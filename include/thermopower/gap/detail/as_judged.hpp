@@ -3,12 +3,12 @@
 #pragma once
 
 #include <thermopower/gap/data/inputs.hpp>
-#include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/compare/thresholds.hpp>
 #include <thermopower/gap/detail/attempt.hpp>
 #include <thermopower/gap/detail/posing.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
-#include <thermopower/gap/report/fit_noise.hpp>
-#include <thermopower/gap/report/score.hpp>
+#include <thermopower/gap/compare/fit_noise.hpp>
+#include <thermopower/gap/compare/score.hpp>
 
 #include <algorithm>
 #include <array>

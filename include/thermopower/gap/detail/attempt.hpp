@@ -3,10 +3,10 @@
 #pragma once
 
 #include <thermopower/gap/compare/choice.hpp>
-#include <thermopower/gap/decide/evidence.hpp>
-#include <thermopower/gap/decide/gap_taken.hpp>
-#include <thermopower/gap/decide/search.hpp>
-#include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/compare/evidence.hpp>
+#include <thermopower/gap/compare/gap_taken.hpp>
+#include <thermopower/gap/compare/search.hpp>
+#include <thermopower/gap/compare/thresholds.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/report/parts.hpp>
 

@@ -3,15 +3,15 @@
 #pragma once
 
 #include <thermopower/gap/check.hpp>
-#include <thermopower/gap/data/command_between_rows.hpp>
-#include <thermopower/gap/data/current_noise.hpp>
-#include <thermopower/gap/data/driven_before.hpp>
-#include <thermopower/gap/data/experiment.hpp>
-#include <thermopower/gap/data/heater_duty.hpp>
-#include <thermopower/gap/data/heat_between_rows.hpp>
-#include <thermopower/gap/data/lagging_output.hpp>
+#include <thermopower/gap/observe/command_between_rows.hpp>
+#include <thermopower/gap/observe/current_noise.hpp>
+#include <thermopower/gap/observe/driven_before.hpp>
+#include <thermopower/gap/observe/experiment.hpp>
+#include <thermopower/gap/observe/heater_duty.hpp>
+#include <thermopower/gap/observe/heat_between_rows.hpp>
+#include <thermopower/gap/observe/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
-#include <thermopower/gap/data/target_between_rows.hpp>
+#include <thermopower/gap/observe/target_between_rows.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/rule.hpp>
 #include <thermopower/gap/units/choose_units.hpp>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/check.hpp>
-#include <thermopower/gap/data/experiment.hpp>
+#include <thermopower/gap/observe/experiment.hpp>
 #include <thermopower/gap/rule.hpp>
 #include <thermopower/plant/variable_words.hpp>
 

@@ -11,15 +11,15 @@
 #include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/detail/posing.hpp>
 #include <thermopower/gap/fit/curve_ranges.hpp>
-#include <thermopower/gap/localise/localisation.hpp>
-#include <thermopower/gap/localise/occurrence.hpp>
+#include <thermopower/gap/where/localisation.hpp>
+#include <thermopower/gap/where/occurrence.hpp>
 #include <thermopower/gap/options.hpp>
 #include <thermopower/gap/report/held_out_predictions.hpp>
 #include <thermopower/gap/report/last_fit.hpp>
 #include <thermopower/gap/report/parts.hpp>
-#include <thermopower/gap/report/score.hpp>
+#include <thermopower/gap/compare/score.hpp>
 #include <thermopower/gap/simulate.hpp>
-#include <thermopower/gap/data/heater_duty.hpp>
+#include <thermopower/gap/observe/heater_duty.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/compare/thresholds.hpp>
 #include <thermopower/gap/fit/axis_averaging.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/fit/segment_choice.hpp>

@@ -2,9 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/decide/covariance.hpp>
-#include <thermopower/gap/decide/search.hpp>
-#include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/compare/covariance.hpp>
+#include <thermopower/gap/compare/search.hpp>
+#include <thermopower/gap/compare/thresholds.hpp>
 #include <thermopower/gap/compare/choice.hpp>
 #include <thermopower/gap/compare/effort_lead.hpp>
 #include <thermopower/gap/detail/as_judged.hpp>
@@ -13,7 +13,7 @@
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/short_windows.hpp>
 #include <thermopower/gap/fit/single_causes.hpp>
-#include <thermopower/gap/report/fit_noise.hpp>
+#include <thermopower/gap/compare/fit_noise.hpp>
 #include <thermopower/gap/report/last_fit.hpp>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <thermopower/gap/fit/fitter.hpp>
 #include <thermopower/gap/fit/signal_sums.hpp>
 #include <thermopower/gap/fit/traps.hpp>
-#include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/observe/noise.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/observe/noise.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/decide/covariance.hpp>
+#include <thermopower/gap/compare/covariance.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 
 #include <Eigen/Core>

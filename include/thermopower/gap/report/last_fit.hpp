@@ -4,9 +4,9 @@
 
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/segment_choice.hpp>
-#include <thermopower/gap/decide/evidence.hpp>
+#include <thermopower/gap/compare/evidence.hpp>
 #include <thermopower/gap/report/estimates.hpp>
-#include <thermopower/gap/report/fit_noise.hpp>
+#include <thermopower/gap/compare/fit_noise.hpp>
 #include <thermopower/gap/report/parts.hpp>
 
 #include <algorithm>

@@ -6,10 +6,10 @@
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
-#include <thermopower/gap/localise/localisation.hpp>
+#include <thermopower/gap/where/localisation.hpp>
 #include <thermopower/gap/report/estimates.hpp>
-#include <thermopower/gap/report/noise_of_errors.hpp>
-#include <thermopower/gap/report/score.hpp>
+#include <thermopower/gap/compare/noise_of_errors.hpp>
+#include <thermopower/gap/compare/score.hpp>
 #include <thermopower/gap/compare/choice.hpp>
 #include <thermopower/plant/variable_words.hpp>
 #include <thermopower/plant/calibration_id.hpp>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
-#include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/observe/prepared_recording.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 #include <thermopower/plant/samples.hpp>

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/observe/prepared_recording.hpp>
 #include <thermopower/gap/units/windows.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 #include <thermopower/plant/sine_cosine.hpp>

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/jackknife.hpp>
+#include <thermopower/gap/data/normal_equations.hpp>
+#include <thermopower/gap/data/robust.hpp>
+#include <thermopower/plant/bench_at_rows.hpp>
+#include <thermopower/plant/samples.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file heat_between_rows.hpp
+/// When a power that differs from row to row was switched. A row's power holds until the next one: so says the format, and
+/// so it is where the loop that sets it also logs. A logger of its own sees the power some time after it was switched, and
+/// a loop that sets, waits and then logs writes the power of the interval that is over. The temperature tells which.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of the question when a power was switched.
+/// Held by tests/gap/observe/heat_test.cpp.
+struct HeatThresholds {
+  Eigen::Index block_rows = 17;  ///< through which a body goes as the terms say, but for a straight line
+  std::size_t parts = 20;        ///< of the blocks, for the jackknife
+  std::size_t least_blocks = 6;  ///< in which the heat changes
+  double least_share = 0.25;     ///< switched at any time is a half
+  double most_share = 1.25;      ///< of the interval that is over is one
+  double whole = 0.8;            ///< from here on it is the interval that is over
+  double sure = 5.0;      ///< standard errors that the share differs from 0 by: one in 25 000, of 20 parts
+  double agree = 2.5;     ///< standard errors that few and all bodies, and recordings, may differ by
+  double precise = 0.12;  ///< largest standard error of the share
+};
+
+/// Asks temperatures when the heat changed.
+///
+/// In a block of some rows a temperature is a straight line and what the heat does to it: its sum over time, and that of what
+/// bodies with some time constants still hold of it, since the run began; and, where a change to the next row's heat came
+/// earlier than that row, what it did until there: (q_{k+1} - q_k) dt_k, summed up. Nothing that a body or a thermometer
+/// does later makes the coefficient of that positive. No term is made of temperatures: their noise would bias it.
+class HeatBetweenRows {
+public:
+  /// Adds a recording. @param heat_W  of each row, by the model's law
+  void add(const Inputs& inputs, const Eigen::VectorXd& heat_W) {
+    if (!inputs.judged(Signal::motor_C) || heat_W.size() == 0) return;
+    constexpr HeatThresholds limit;
+    const double usual_s = plant::median_interval_s(inputs.t_s, inputs.runs, 0.0);
+    for (const RunSpan& run : inputs.runs) {
+      const Eigen::MatrixXd did = heat_until(inputs, heat_W, run, usual_s);
+      for (Eigen::Index begin = run.begin; begin + limit.block_rows <= run.end;
+           begin += limit.block_rows - 1) {
+        const auto heat = heat_W.segment(begin, limit.block_rows);
+        if (heat.maxCoeff() - heat.minCoeff() > 1e-6 * heat.cwiseAbs().maxCoeff())
+          add_block(inputs, did.middleRows(begin - run.begin, limit.block_rows), begin);
+      }
+    }
+  }
+
+  /// Part of an interval in which the next row's heat is there already: a half where it is switched at any time, 1 where
+  /// rows are written after their interval; nothing where it holds or where nobody knows.
+  std::optional<double> share() const {
+    constexpr HeatThresholds limit;
+    const Estimate best = told();
+    if (!(best.error < limit.precise) || !(best.value > limit.sure * best.error)) return std::nullopt;
+    if (!(best.value > limit.least_share) || !(best.value < limit.most_share)) return std::nullopt;
+    return best.value > limit.whole ? 1.0 : best.value;
+  }
+
+  /// Whether what other recordings tell is another share by more than chance has it: one logger writes all of them.
+  bool differs_from(const HeatBetweenRows& others) const {
+    constexpr HeatThresholds limit;
+    const Estimate here = told(), there = others.told();
+    return there.error < limit.precise &&
+           std::abs(here.value - there.value) > limit.agree * std::hypot(here.error, there.error);
+  }
+
+private:
+  static constexpr std::size_t bodies = 3;
+  static constexpr Eigen::Index terms = bodies + 2;  ///< what came earlier, the sum, and the bodies
+
+  /// Of the heat's earlier change in the heat, which all terms but the first are given at once.
+  /// @param used  terms, from the first on
+  static double share_of(const NormalEquations& sums, Eigen::Index used) {
+    const Eigen::VectorXd fitted = sums.solve_first(used);
+    const double at_once = fitted.tail(used - 1).sum();
+    return at_once > 0.0 ? fitted[0] / at_once : plant::missing;
+  }
+
+  struct Estimate {
+    double value = plant::missing, error = 1e9;
+  };
+
+  /// The share as it is told best: one body tells more where it suffices (Hausman 1978, Econometrica 46).
+  Estimate told() const {
+    constexpr HeatThresholds limit;
+    const Estimate few = estimate(terms - 2), all = estimate(terms);
+    const bool suffices = std::abs(few.value - all.value) < limit.agree * all.error;
+    return suffices && few.error < all.error ? few : all;
+  }
+
+  Estimate estimate(Eigen::Index used) const {
+    constexpr HeatThresholds limit;
+    if (blocks_.size() < limit.least_blocks) return {};
+    const std::size_t parts = std::min(limit.parts, blocks_.size());
+    std::vector<NormalEquations> sums(parts, NormalEquations(terms));
+    for (std::size_t i = 0; i < blocks_.size(); ++i) sums[i * parts / blocks_.size()].add(blocks_[i], 1.0);
+    const auto [all, without] =
+        left_out(sums, [used](const NormalEquations& some) { return share_of(some, used); });
+    const double error = jackknife_error(without);
+    if (!std::isfinite(error)) return {};
+    return {share_of(all, used), error};
+  }
+
+  /// What the heat of a run did until each of its rows, in J: a row of terms for each.
+  static Eigen::MatrixXd heat_until(const Inputs& inputs, const Eigen::VectorXd& heat_W, const RunSpan& run,
+                                    double usual_s) {
+    constexpr std::array<double, bodies> hold{30.0, 6.0, 1.5};  // intervals
+    Eigen::MatrixXd did(run.size(), terms);
+    std::array<double, terms> now{};
+    for (Eigen::Index row = run.begin; row < run.end; ++row) {
+      for (std::size_t k = 0; k < now.size(); ++k)
+        did(row - run.begin, static_cast<Eigen::Index>(k)) = now[k];
+      if (row + 1 == run.end) break;
+      const double step_s = inputs.t_s[row + 1] - inputs.t_s[row];
+      now[0] += (heat_W[row + 1] - heat_W[row]) * step_s;
+      now[1] += heat_W[row] * step_s;
+      for (std::size_t k = 0; k < bodies; ++k) {
+        const double time_constant_s = hold[k] * usual_s, kept = std::exp(-step_s / time_constant_s);
+        double& held_J = now[k + 2];
+        held_J = kept * held_J + (1.0 - kept) * time_constant_s * heat_W[row];
+      }
+    }
+    return did;
+  }
+
+  /// Leaves of each column what its straight line does not tell. @param along  abscissa of the rows
+  static void take_line_off(const Eigen::VectorXd& along, Eigen::MatrixXd& columns) {
+    const double middle = along.mean();
+    double spread = 0.0;
+    for (Eigen::Index i = 0; i < along.size(); ++i) spread += (along[i] - middle) * (along[i] - middle);
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+      const double mean = columns.col(k).mean();
+      double slope = 0.0;
+      for (Eigen::Index i = 0; i < along.size(); ++i) slope += (along[i] - middle) * columns(i, k) / spread;
+      for (Eigen::Index i = 0; i < along.size(); ++i) columns(i, k) -= mean + slope * (along[i] - middle);
+    }
+  }
+
+  void add_block(const Inputs& inputs, const Eigen::Ref<const Eigen::MatrixXd>& did, Eigen::Index begin) {
+    const Eigen::VectorXd& motor_C = inputs.of(Signal::motor_C);
+    const Eigen::Index rows = did.rows();
+    Eigen::MatrixXd left(rows, terms + 1);
+    Eigen::VectorXd along_s(rows);
+    Eigen::Index used = 0;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      if (!std::isfinite(motor_C[begin + i])) continue;
+      for (Eigen::Index k = 0; k < terms; ++k) left(used, k) = did(i, k);
+      left(used, terms) = motor_C[begin + i];
+      along_s[used++] = inputs.t_s[begin + i] - inputs.t_s[begin];
+    }
+    if (2 * used < rows) return;
+    left.conservativeResize(used, terms + 1);
+    along_s.conservativeResize(used);
+    take_line_off(along_s, left);
+    NormalEquations block(terms);
+    for (Eigen::Index i = 0; i < used; ++i) block.add(left.row(i).head(terms), left(i, terms));
+    blocks_.push_back(std::move(block));
+  }
+
+  std::vector<NormalEquations> blocks_;
+};
+
+/// Part of each interval in which the next row's inputs are in force: `share` where they make another heat, else 0.
+inline Eigen::VectorXd switched_share(const Inputs& inputs, const Eigen::VectorXd& heat_W, double share) {
+  constexpr double other = 0.01;  // of the range of the heat: less is as well held
+  const double least_W = other * (heat_W.maxCoeff() - heat_W.minCoeff());
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(inputs.rows());
+  for (const RunSpan& run : inputs.runs)
+    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row)
+      if (std::abs(heat_W[row + 1] - heat_W[row]) > least_W) shares[row] = share;
+  return shares;
+}
+
+/// The column that tells the heat.
+inline std::string heat_column(const Inputs& inputs) {
+  if (inputs.heat_W.size() > 0) return "heat_W";
+  if (inputs.heat == HeatSource::law) return "power_param";
+  return inputs.heat == HeatSource::drive ? "drive_A" : "current_A";
+}
+
+}  // namespace thermopower::gap::engine
