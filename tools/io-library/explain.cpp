@@ -135,6 +135,7 @@ constexpr ReasonNotes reasons[] = {
     {Reason::constants_moved, "Measure the constant that moved by itself."},
     {Reason::common_factor,
      "Read unit, gear ratio, supply and clock once more; record again with the right one."},
+    {Reason::constant_closes_most, "Measure that constant by itself, correct it, and diagnose again."},
     {Reason::constants_leave_a_rest, "Vary one input at a time, over its whole range."},
     {Reason::cause_explains, "The experiment under 'next' confirms it."},
     {Reason::several_explain, "The experiment under 'next' tells them apart."},

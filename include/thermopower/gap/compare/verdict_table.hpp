@@ -25,6 +25,9 @@ struct VerdictLimits {
   double most_by_chance = 2.0;
   /// Share of the gap that the lower end of an interval must reach to be material.
   double material = 0.05;
+  /// The same where a rest stays and constants alone do as well, for a single constant or for a cause that spares them all: what is
+  /// missing bends constants, too, but seldom one alone so far that it closes half of the gap.
+  double mostly = 0.5;
   /// Share of what refitted constants leave that a cause may leave: a fifth better than constants alone.
   double of_constants = 0.8;
   /// Probability from which one class is the answer.
@@ -95,11 +98,12 @@ struct Decision {
 /// The verdict table.
 /// @param numbers         of the likeliest explanation
 /// @param only_constants  whether that explanation has no effect, only moved constants
-/// @param within_known    whether the refitted constants are within what the model file says is known
+/// @param beyond_known    how many of the refitted constants are beyond what the model file says is known
 /// @param spares_constants  whether those beside that explanation's effects are
-inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool within_known,
+inline Decision decide(const DecisionNumbers& numbers, bool only_constants, int beyond_known,
                        bool spares_constants) {
   const VerdictLimits& limit = verdict_limits;
+  const bool within_known = beyond_known == 0;
   assert(numbers.probability >= 0.0 && numbers.probability <= 1.0 + 1e-9);
   const double passes = std::max(limit.passes, std::min(numbers.by_chance, limit.most_by_chance));
   if (numbers.configured <= passes && numbers.twice_horizon <= limit.near_floor)
@@ -110,6 +114,9 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
     return {Verdict::no_gap, Reason::configured_model_passes};
   // Near the floor as configured, too, and no better: the gap shows in longer windows, and constants do not close it.
   const bool closes_nothing = !is_proven && numbers.configured <= limit.near_floor;
+  const bool closes_most = 1.0 - numbers.share.most >= limit.mostly;
+  if (only_constants && !near && beyond_known == 1 && closes_most)
+    return {Verdict::partial, Reason::constant_closes_most};
   if (only_constants && (!near || closes_nothing))
     return {Verdict::unexplained, Reason::constants_leave_a_rest};
   // One factor in a unit, a gear or a supply does what the moved constants do, alone or beside an effect.
@@ -120,9 +127,9 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
   if (only_constants)
     return {Verdict::explained, within_known ? Reason::constants_within_known : Reason::constants_moved};
   const bool beats_constants = numbers.share.of_refitted_constants <= limit.of_constants;
-  const bool closes = is_proven && beats_constants;
-  // An explanation at the floor closes the gap. It need not beat constants that do, too, where it spares them: their moves count in
-  // its probability. Where it moves them as well, the data do not tell it from them.
+  // An explanation that closes the gap need not beat constants that do as well by leaving what is known of them, where it spares
+  // them: their moves count in its probability. Where it moves them as well, the data do not tell it from them.
+  const bool closes = is_proven && (beats_constants || (closes_most && spares_constants && !within_known));
   const bool adds_nothing = !beats_constants && !spares_constants;
   if (near && adds_nothing)
     return numbers.refitted <= limit.near_floor ? Decision{Verdict::ambiguous, Reason::cause_or_constants}

@@ -311,10 +311,10 @@ private:
     const bool is_shared = only_constants ? share_a_factor(refitted) : is_another_supply(chosen, of_chosen);
     if (result_.numbers.common_factor == CommonFactor::none && is_shared)
       result_.numbers.common_factor = CommonFactor::of_no_constant;
-    const bool within_known = are_within(refitted);
-    Decision decided = ran_away(result_.gap)
-                           ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
-                           : decide(result_.numbers, only_constants, within_known, are_within(of_chosen));
+    const std::vector<int> beyond = beyond_known(refitted);
+    Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
+                                             : decide(result_.numbers, only_constants,
+                                                      static_cast<int>(beyond.size()), are_within(of_chosen));
     const bool is_named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
                           decided.verdict == Verdict::partial;
     if (is_named && !only_constants && !has_readings_enough(chosen))
@@ -324,6 +324,7 @@ private:
     result_.reason = to_string(decided.reason);
     const bool by_constants = decided.reason == Reason::constants_within_known ||
                               decided.reason == Reason::constants_moved ||
+                              decided.reason == Reason::constant_closes_most ||
                               (decided.reason == Reason::common_factor && only_constants);
     const bool named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
                        decided.verdict == Verdict::partial;
@@ -331,8 +332,8 @@ private:
     note_recalibration(result_);
     if (!named || by_constants) keep_constants_alone(result_, model_);
     if (named && by_constants) {
-      if (within_known) constants.explanation = fewest_constants(attempt.problem, constants).explanation;
-      else constants.explanation.released = beyond_known(refitted);
+      if (beyond.empty()) constants.explanation = fewest_constants(attempt.problem, constants).explanation;
+      else constants.explanation.released = beyond;
       name_causes(result_, candidates,
                   {choice.chosen, only_constants ? choice.probability : 1.0 - choice.probability, 0.0, {}},
                   constants, model_, weight);

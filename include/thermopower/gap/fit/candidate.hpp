@@ -127,8 +127,8 @@ inline double cost_of_parameters(const Candidate& candidate, const Model& model,
   if (precision.empty()) return cost + most * static_cast<double>(priced.size());
   for (const std::size_t place : priced) {
     const Coordinate& one = candidate.list[place];
-    const auto at = static_cast<Eigen::Index>(place);
-    const double own = at < candidate.fit.priors.size() ? candidate.fit.priors[at] / counts_as_one : 0.0;
+    const auto row = static_cast<Eigen::Index>(place);
+    const double own = row < candidate.fit.priors.size() ? candidate.fit.priors[row] / counts_as_one : 0.0;
     cost += price_of_parameter({one.upper - one.lower, own}, precision[place], most);
   }
   return cost;
