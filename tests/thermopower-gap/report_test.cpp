@@ -3,6 +3,7 @@
 
 #include "../catch.hpp"
 
+#include <thermopower/io/sentences.hpp>
 #include <thermopower/io/output_files.hpp>
 #include "chart.hpp"
 #include "html_text.hpp"
@@ -572,6 +573,16 @@ TEST_CASE(
     CHECK_THAT(text, ContainsSubstring("not told by these data"));
     CHECK_THAT(text, !ContainsSubstring("[0, 1.00]"));
   }
+}
+
+TEST_CASE("a curve has words: what is unknown, and what it follows") {
+  CHECK(io::effect_in_words("unknown.friction(rate_dps)") ==
+        "an unknown friction that follows the angular rate");
+  CHECK(io::effect_in_words("unknown.loss(rise_K)") ==
+        "an unknown loss that follows the temperature above the air");
+  CHECK(io::effect_in_words("unknown.flow(level_m)") ==
+        "an unknown flow that follows level_m");  // of a user's own
+  CHECK(io::effect_in_words("unknown.") == "unknown.");
 }
 
 TEST_CASE("the summary gives a curve by its two ends") {

@@ -242,6 +242,13 @@ std::string agreement(const Diagnosis& diagnosis) {
 }  // namespace
 
 std::string effect_in_words(const std::string& effect) {
+  if (plant::is_curve(effect)) {  // unknown.<balance>(<variable>)
+    const std::size_t opens = effect.find('('), begins = plant::curve_prefix.size();
+    if (opens == std::string::npos || effect.back() != ')') return effect;
+    const std::string variable = effect.substr(opens + 1, effect.size() - opens - 2);
+    return "an unknown " + effect.substr(begins, opens - begins) + " that follows " +
+           plant::the_variable(variable);
+  }
   if (!plant::is_calibration(effect)) return spaced(effect);
   const std::string id = effect.substr(sizeof plant::calibration_prefix - 1);
   const char* const word = word_for(constants, id);
@@ -294,8 +301,8 @@ std::vector<std::string> sentences(const Diagnosis& diagnosis, const std::vector
         if (better)
           add("Refitted constants bring that down to " +
               with_plain_unit(readable(most->recalibrated), most->unit) +
-              "; no effect of the catalogue takes the rest away.");
-        else add("Neither other constants nor an effect of the catalogue takes that away.");
+              "; no effect of the catalogue is shown to take the rest away.");
+        else add("Neither other constants nor an effect of the catalogue is shown to take that away.");
       }
       break;
     case Verdict::insufficient:

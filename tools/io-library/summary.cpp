@@ -142,7 +142,7 @@ std::string summary(const Diagnosis& diagnosis, const std::vector<EffectInfo>& e
                               readable(constant.fitted) + " (known to " +
                               (constant.is_place ? readable(constant.uncertainty) + " rad"
                                                  : percent_text(constant.uncertainty)) +
-                              (constant.on_bound ? "; on its bound)" : ")"));
+                              (constant.on_bound ? "; as far as a fit may move it)" : ")"));
   }
   if (diagnosis.remaining) {
     const Remaining& rest = *diagnosis.remaining;
