@@ -37,13 +37,19 @@ constexpr Question of_a_motor[] = {
     {"--resistance", "winding resistance at 25 degC, ohm", ""},
     {"--heat-capacity", "heat capacity of the motor, J/K (450 J/K a kilogram does for a start)", ""},
     {"--conductance", "heat that it loses to the air, W/K (0.1 for a motor of 100 g)", ""}};
+constexpr Question of_a_heater[] = {
+    {"--supply", "supply, V", "24"},
+    {"--heater-power", "power of the heater at that supply, W", ""},
+    {"--heat-capacity", "heat capacity of what it warms, J/K (12 for a hotend's block, 600 for a bed)", ""},
+    {"--conductance", "heat that this loses to the air, W/K (0.1 for a hotend, 1 for a bed)", ""}};
 constexpr Question of_a_joint[] = {
     {"--inertia", "inertia that turns with the joint, kg m^2", ""},
     {"--viscous", "viscous friction, N m s/rad", "0.001"},
     {"--torque-constant", "torque constant at the joint, N m/A (gear ratio times the motor's)", ""}};
 
 struct Description {
-  std::string file, joint, out, name;
+  std::string file, joint, out, name, loop;
+  std::vector<double> gains;  ///< of a PID: kp, ki, kd, as the printer's configuration has them
   std::map<std::string, std::optional<double>> constants;
   std::optional<double> value(const char* option) const {
     const auto found = constants.find(option);
@@ -97,6 +103,12 @@ bool knows_any(const Question (&questions)[count], const Description& asked) {
   return false;
 }
 
+// A heater is told from a motor by what only a heater has.
+bool is_heater(const Description& asked) {
+  return asked.value("--heater-power") || !asked.loop.empty() || !asked.gains.empty() ||
+         asked.value("--band") || asked.value("--max-power");
+}
+
 template <std::size_t count>
 void expect_all(const Question (&questions)[count], Description& asked) {
   std::string missing;
@@ -108,7 +120,7 @@ void expect_all(const Question (&questions)[count], Description& asked) {
   if (!missing.empty())
     throw UsageError(
         "init: " + missing +
-        " missing; expected all constants of a motor or a joint, or none, and then they are asked for");
+        " missing; expected all constants of a motor, a heater or a joint, or none, and then they are asked for");
 }
 
 std::string json_text(const std::string& text) {
@@ -133,6 +145,43 @@ std::string motor_blocks(const Description& asked) {
          number(*asked.value("--heat-capacity")) +
          ", \"conductance_W_per_K\": " + number(*asked.value("--conductance")) +
          ",\n  \"uncertainty\": {\"heat_capacity_J_per_K\": 0.2, \"conductance_W_per_K\": 0.3}}";
+}
+
+// The heater's resistance from its power. Its constants then stand where a motor's do.
+void take_heater(Description& asked) {
+  if (asked.value("--resistance"))
+    throw UsageError(
+        "init: --resistance beside --heater-power; expected one of them, the other follows from it");
+  const double supply_V = *asked.value("--supply"), power_W = *asked.value("--heater-power");
+  if (!(power_W > 0.0))
+    throw UsageError("init: --heater-power: is " + number(power_W) + "; expected a number above 0");
+  asked.constants["--resistance"] = supply_V * supply_V / power_W;
+}
+
+// The loop that sets the heater's power, for recordings that hold target_C and no power.
+std::string loop_block(const Description& asked) {
+  const bool is_pid = asked.loop == "klipper_pid" || asked.loop == "marlin_pid";
+  if (is_pid && asked.gains.empty())
+    throw UsageError(
+        "init: --gains missing; expected three numbers, P, I and D of the printer's configuration");
+  if (!is_pid && !asked.gains.empty())
+    throw UsageError(
+        "init: --gains without a PID; expected --loop klipper_pid or --loop marlin_pid beside it");
+  if (is_pid && asked.value("--band"))
+    throw UsageError("init: --band beside a PID; expected --loop bang_bang beside it");
+  if (asked.loop.empty()) {
+    if (asked.value("--band") || asked.value("--max-power"))
+      throw UsageError("init: --loop missing; expected klipper_pid, marlin_pid or bang_bang");
+    return {};
+  }
+  std::string out =
+      ",\n // The loop of the heater, for recordings that hold target_C and no power.\n \"heater\": {\"law\": \"" +
+      asked.loop + "\"";
+  if (is_pid)
+    out += ", \"kp_per_K\": " + number(asked.gains[0]) + ", \"ki_per_K_s\": " + number(asked.gains[1]) +
+           ", \"kd_s_per_K\": " + number(asked.gains[2]);
+  else out += ", \"max_delta_K\": " + number(asked.value("--band").value_or(2.0));
+  return out + ", \"max_power\": " + number(asked.value("--max-power").value_or(1.0)) + "}";
 }
 
 std::string joint_blocks(const Description& asked, const RobotJoint* robot) {
@@ -186,6 +235,11 @@ constexpr struct {
               {"/current/tempco_per_K", "--tempco"},
               {"/thermal/heat_capacity_J_per_K", "--heat-capacity"},
               {"/thermal/conductance_W_per_K", "--conductance"},
+              {"/heater/kp_per_K", "--gains"},
+              {"/heater/ki_per_K_s", "--gains"},
+              {"/heater/kd_s_per_K", "--gains"},
+              {"/heater/max_delta_K", "--band"},
+              {"/heater/max_power", "--max-power"},
               {"/axis/inertia_kgm2", "--inertia"},
               {"/axis/viscous_Nms_per_rad", "--viscous"},
               {"/axis/torque_constant_Nm_per_A", "--torque-constant"}};
@@ -221,26 +275,35 @@ int init(Description& asked) {
     take("--viscous", robot->viscous_Nms_per_rad);
     take("--torque-constant", robot->Nm_per_command.value_or(1.0));
   }
-  bool joint = knows_any(of_a_joint, asked), motor = knows_any(of_a_motor, asked);
+  bool heater = is_heater(asked), joint = knows_any(of_a_joint, asked),
+       motor = !heater && knows_any(of_a_motor, asked);
+  if (heater && joint)
+    throw UsageError("init: options of a heater and of a joint; expected those of one of them");
   if (joint) expect_all(of_a_joint, asked);
   if (motor) expect_all(of_a_motor, asked);
-  if (!joint && !motor) {
-    std::fputs("What was recorded: 1 a motor that warms, 2 a joint that moves, 3 both? ", stderr);
+  if (heater) expect_all(of_a_heater, asked);
+  if (!joint && !motor && !heater) {
+    std::fputs("What was recorded: 1 a motor that warms, 2 a joint that moves, 3 both, 4 a heater? ", stderr);
     std::string line;
-    if (!answered(line) || (line != "1" && line != "2" && line != "3"))
+    if (!answered(line) || line.size() != 1 || line[0] < '1' || line[0] > '4')
       throw UsageError(
-          "init: expected 1, 2 or 3, an MJCF or URDF file, or options such as --resistance and --inertia");
-    motor = line != "2";
-    joint = line != "1";
+          "init: expected 1, 2, 3 or 4, an MJCF or URDF file, or options such as --resistance, --inertia and "
+          "--heater-power");
+    heater = line == "4";
+    motor = line == "1" || line == "3";
+    joint = line == "2" || line == "3";
     if (motor) ask_all(of_a_motor, asked);
     if (joint) ask_all(of_a_joint, asked);
+    if (heater) ask_all(of_a_heater, asked);
   }
+  if (heater) take_heater(asked);
   std::string name = asked.name;
-  if (name.empty()) name = robot ? robot->name : joint ? "joint" : "motor";
+  if (name.empty()) name = robot ? robot->name : joint ? "joint" : heater ? "heater" : "motor";
   std::string text =
       "{\n // The simulation under test. Comments like this one are skipped.\n \"format\": \"thermopower-model/1\",\n \"name\": " +
       json_text(name) + ",\n";
-  if (motor) text += motor_blocks(asked) + (joint ? ",\n" : "\n");
+  if (motor || heater)
+    text += motor_blocks(asked) + (heater ? loop_block(asked) : std::string()) + (joint ? ",\n" : "\n");
   if (joint) text += joint_blocks(asked, robot ? &*robot : nullptr) + "\n";
   text += "}\n";
   expect_model(asked, text);
@@ -273,5 +336,13 @@ Command add_init(CLI::App& program) {
   constant("--tempco",
            "how much of its resistance the winding gains a kelvin, 1/K: 0.00393 for copper, 0 without it");
   for (const Question& one : of_a_joint) constant(one.option, one.question);
+  constant("--heater-power", "power of a heater at its supply, W; the model is that of a heater then");
+  app->add_option("--loop", asked->loop, "the loop that sets a heater's power, for logs that hold none")
+      ->check(CLI::IsMember({"klipper_pid", "marlin_pid", "bang_bang"}));
+  app->add_option("--gains", asked->gains, "its P, I and D, as the printer's configuration has them")
+      ->expected(3)
+      ->check(a_number);
+  constant("--band", "half the band of a bang_bang loop, K (2 without it)");
+  constant("--max-power", "largest duty of the loop, above 0 to 1 (1 without it)");
   return {app, [asked] { return init(*asked); }};
 }
