@@ -174,6 +174,9 @@ std::string loop_block(const Description& asked) {
       throw UsageError("init: --loop missing; expected klipper_pid, marlin_pid or bang_bang");
     return {};
   }
+  const double max_power = asked.value("--max-power").value_or(1.0);
+  if (!(max_power > 0.0 && max_power <= 1.0))
+    throw UsageError("init: --max-power: is " + number(max_power) + "; expected a share above 0 to 1");
   std::string out =
       ",\n // The loop of the heater, for recordings that hold target_C and no power.\n \"heater\": {\"law\": \"" +
       asked.loop + "\"";
@@ -181,7 +184,7 @@ std::string loop_block(const Description& asked) {
     out += ", \"kp_per_K\": " + number(asked.gains[0]) + ", \"ki_per_K_s\": " + number(asked.gains[1]) +
            ", \"kd_s_per_K\": " + number(asked.gains[2]);
   else out += ", \"max_delta_K\": " + number(asked.value("--band").value_or(2.0));
-  return out + ", \"max_power\": " + number(asked.value("--max-power").value_or(1.0)) + "}";
+  return out + ", \"max_power\": " + number(max_power) + "}";
 }
 
 std::string joint_blocks(const Description& asked, const RobotJoint* robot) {
@@ -239,7 +242,6 @@ constexpr struct {
               {"/heater/ki_per_K_s", "--gains"},
               {"/heater/kd_s_per_K", "--gains"},
               {"/heater/max_delta_K", "--band"},
-              {"/heater/max_power", "--max-power"},
               {"/axis/inertia_kgm2", "--inertia"},
               {"/axis/viscous_Nms_per_rad", "--viscous"},
               {"/axis/torque_constant_Nm_per_A", "--torque-constant"}};
