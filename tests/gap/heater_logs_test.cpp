@@ -7,6 +7,7 @@
 #include "plants.hpp"
 
 #include <thermopower/gap/diagnose.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -155,4 +156,42 @@ TEST_CASE("what a hotend loses is named beside its thermistor's lag") {
   }
 }
 
+/// A motor under a loop that sets its power ten times a second by what its thermometer reads, and logs each tenth time.
+Recording of_a_faster_loop(int rows, unsigned seed) {
+  constexpr int steps_a_row = 10;
+  test::Noise noise(seed);
+  Recording r;
+  r.name = "faster loop";
+  r.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(rows - 1));
+  Eigen::VectorXd power(rows), motor(rows);
+  double body_C = 23.0, goal_C = 40.0, integral = 0.0;
+  for (int row = 0; row < rows; ++row) {
+    if (row % 300 == 0) goal_C = 42.5 + 12.5 * std::sin(2.3 * row + seed), integral = 0.0;
+    for (int step = 0; step < steps_a_row; ++step) {
+      const double seen_C = rounded(body_C + 0.1 * noise(), 0.1);
+      integral = std::clamp(integral + 0.03 * (goal_C - seen_C), 0.0, 255.0);
+      const double set = std::round(std::clamp(25.0 * (goal_C - seen_C) + integral, 0.0, 255.0));
+      if (step == 0) power[row] = set, motor[row] = seen_C;
+      for (int k = 0; k < steps_a_row; ++k)
+        body_C += 0.01 *
+                  (144.0 * set / 255.0 / (8.0 * (1.0 + 0.00393 * (body_C - 25.0))) - 0.15 * (body_C - 23.0)) /
+                  60.0;
+    }
+  }
+  r.set("power_param", power);
+  r.set("motor_C", motor);
+  r.set("ambient_C", Eigen::VectorXd::Constant(rows, 23.0));
+  r.set("supply_V", Eigen::VectorXd::Constant(rows, 12.0));
+  return r;
+}
+
 }  // namespace
+
+TEST_CASE("one row a second of a loop that is faster names no cause in a motor that has none") {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    CAPTURE(seed);
+    const Diagnosis diagnosis =
+        diagnose(test::bench_model(), {of_a_faster_loop(2400, seed)}, {of_a_faster_loop(1500, seed + 50)});
+    for (const Cause& cause : diagnosis.cause) CHECK(plant::is_calibration(cause.effect));
+  }
+}

@@ -228,16 +228,31 @@ TEST_CASE(
     const std::vector<CalibratedConstant> constants = model.calibrated();
     std::size_t torque_constant = 0;
     while (constants[torque_constant].id != "torque_constant") ++torque_constant;
+    // The data tell two things, to a thousandth. Beside a torque constant that is known to some error they tell both of a load's
+    // friction, and of two efficiencies each of their products with it.
+    const auto k = static_cast<Eigen::Index>(torque_constant);
+    const auto first = static_cast<Eigen::Index>(constants.size());
+    const double sd = model.uncertainty_of(constants[torque_constant]);
+    for (std::size_t i : {1u, 2u}) {
+      Eigen::MatrixXd& information = candidates[i].fit.information;
+      const auto count = static_cast<Eigen::Index>(candidates[i].list.size());
+      information = 1e6 * Eigen::MatrixXd::Identity(count, count);
+      if (i == 2) {
+        information(k, k) = 2e6;
+        for (const Eigen::Index one : {first, first + 1}) information(k, one) = information(one, k) = 1e6;
+      }
+      information(k, k) += 1.0 / (sd * sd);
+    }
     candidates[1].fit.point[static_cast<Eigen::Index>(torque_constant)] = moved;
     weigh(candidates, Weight(), model);
     return std::pair(candidates[1].probability, candidates[2].probability);
   };
-  // The one says where the torque constant is, to 5 %, by Cauchy's density; the other one where an efficiency is, between 0.05 and 1.
-  const double odds = 0.95 / (3.14159265 * 0.05);
+  // The one says where the torque constant is, to 5 %, and the other one where an efficiency is, between 0.05 and 1.
+  const double odds = 0.95 / (0.05 * std::sqrt(2.0 * 3.14159265));
   const auto [unmoved, beside_unmoved] = judged(0.0);
   CHECK(unmoved / beside_unmoved == Approx(odds).epsilon(1e-3));
+  // Moved by four times what is known, it is a further thing that is wrong, besides: by Cauchy's density.
   const auto [moved, beside_moved] = judged(-0.2);
-  // Moved by four times what is known, it is a further thing that is wrong, besides.
   CHECK(moved / beside_moved == Approx(odds / (1.0 + 16.0) * std::exp(-0.5 * usual_rarity)).epsilon(1e-3));
   // Whoever has measured it gets an answer.
   model.uncertainty["axis.torque_constant_Nm_per_A"] = 0.005;

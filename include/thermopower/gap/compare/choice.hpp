@@ -130,7 +130,10 @@ inline Answer choose(const std::vector<Candidate>& candidates, const Model& mode
   sort_by(order, [&](std::size_t i) { return -candidates[i].probability; });
   for (const std::size_t i : order) {
     const Candidate& one = candidates[i];
-    const bool nested = one.explanation.includes(answer) || one.explanation.effects.empty();
+    // Constants that moved are another answer than an effect, but not than other constants.
+    const bool nested = one.explanation.effects.empty()
+                            ? answer.effects.empty() || one.explanation.released.empty()
+                            : one.explanation.includes(answer);
     if (i == choice.chosen || nested ||
         one.probability <= decision.alternative * candidates[best].probability)
       continue;

@@ -120,7 +120,7 @@ inline bool was_looked_for(const Parameter& parameter, const Coordinate& one) {
 }
 
 /// Marks explanations of which a cause may be absent. The 95 % intervals of all its sizes hold the value without it, the data tell
-/// none of its parameters, or it is no more than a constant that moved. Two that do the same from opposite sides (a friction that differs by direction, and
+/// nothing of one of its parameters, so that it stands for something simpler, or it is no more than a constant that moved. Two that do the same from opposite sides (a friction that differs by direction, and
 /// a constant torque) are told by their sum alone. Parameters that are known by their order of magnitude, and details of a
 /// shape, are not asked. An interval is one of a valley that is straight. If the set without the cause was fitted and is
 /// far behind, the cause is there, whatever the length of the valley along which it trades with a constant.
@@ -144,19 +144,19 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
     std::size_t at = model.calibrated().size();
     for (const CatalogueEntry* entry : one.explanation.effects) {
       const SpecialCase in_fact = special_case(one, entry->info, at);
-      bool has_a_size = false, is_there = false, is_told = false;
+      bool has_a_size = false, is_there = false, is_told = true;
       for (const Parameter& parameter : entry->info.parameters) {
         const std::size_t place = at++;
         if (!was_looked_for(parameter, one.list[place])) continue;
         const Interval interval = interval_of(one, place, covariance);
-        is_told = is_told || is_narrower(interval, one.list[place]);
+        is_told = is_told && is_narrower(interval, one.list[place]);
         if (parameter.logarithmic) continue;
         has_a_size = true;
         is_there = is_there || parameter.absent_at < interval.low || parameter.absent_at > interval.high;
       }
       const bool is_a_constant = in_fact.the_same && plant::is_calibration(in_fact.cause);
-      const bool may_be_absent = !is_told || (has_a_size && !is_there);
-      one.doubtful = one.doubtful || is_a_constant || (may_be_absent && !is_missed(one, entry));
+      one.doubtful =
+          one.doubtful || is_a_constant || !is_told || (has_a_size && !is_there && !is_missed(one, entry));
     }
   }
 }

@@ -430,21 +430,17 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   double samples = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i)
     samples += candidates.front().train.samples[i] / weight.correlation[i];
-  std::vector<double> penalties;
-  for (const Candidate& one : candidates)
-    penalties.push_back(
+  for (Candidate& one : candidates)
+    one.penalty =
         cost_of_parameters(one, model, most_price_of_parameter(samples), inflation_of(one, weight)) +
         usual_rarity * static_cast<double>(moved_constants(one, model).size()) + one.explanation.rarity() +
-        price_of_constants(one, model));
-  const auto penalty = [&](const Candidate& one) {
-    return penalties[static_cast<std::size_t>(&one - candidates.data())];
-  };
+        price_of_constants(one, model);
   mark_idle(candidates);
   const Candidate* best = nullptr;
   for (Candidate& one : candidates) {
     one.train_deviance = misfit_of(one.train, weight.correlation);
     one.held_out_deviance = misfit_of(one.held_out, weight.held_out);
-    one.deviance = penalty(one) + one.train_deviance + one.held_out_deviance;
+    one.deviance = one.penalty + one.train_deviance + one.held_out_deviance;
     Shown shown = weight.shown;
     shown.by_reaching_the_noise = is_at_the_noise(one);
     one.on_bounds = ends_on_bounds(one, model, shown);
@@ -485,10 +481,10 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     for (Candidate& one : candidates) one.probability = 0.0;
     return;
   }
-  const double fit_of_best = best->deviance - penalty(*best);
+  const double fit_of_best = best->deviance - best->penalty;
   const Candidate* least = best;
   for (Candidate& one : candidates) {
-    if (&one != best && scores_alike(one, *best)) one.deviance = fit_of_best + penalty(one);
+    if (&one != best && scores_alike(one, *best)) one.deviance = fit_of_best + one.penalty;
     if (in_the_running(one) && one.deviance < least->deviance) least = &one;
   }
   for (Candidate& one : candidates) {
@@ -502,13 +498,13 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   std::vector<Candidate*> simplest_first;
   for (Candidate& one : candidates)
     if (in_the_running(one)) simplest_first.push_back(&one);
-  sort_by(simplest_first, [&](const Candidate* one) { return penalty(*one); });
+  sort_by(simplest_first, [&](const Candidate* one) { return one->penalty; });
   for (std::size_t i = 0; i < simplest_first.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {
       Candidate& richer = *simplest_first[i];
       const Candidate& simpler = *simplest_first[k];
-      const double extra = penalty(richer) - penalty(simpler);
-      const double better = simpler.deviance - penalty(simpler) - (richer.deviance - penalty(richer));
+      const double extra = richer.penalty - simpler.penalty;
+      const double better = simpler.deviance - simpler.penalty - (richer.deviance - richer.penalty);
       const double uncertain = uncertainty(richer, simpler);
       if (better > decision.beyond_doubt * uncertain) continue;
       const double proven =

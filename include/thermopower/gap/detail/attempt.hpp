@@ -38,6 +38,22 @@ struct Attempt {
     return one.held_out.any() ? left_over(one.held_out, reference.as_configured) : 1.0;
   }
 
+  /// By how much its likeliest explanation is likelier than another attempt's, by the training data and what its freedom costs: twice
+  /// log odds. Both are fitted to the same readings, in noise of their own.
+  double likelier_than(const Attempt& other) const {
+    const Candidate &here = candidates[likeliest(candidates)],
+                    &there = other.candidates[likeliest(other.candidates)];
+    double odds = there.penalty - here.penalty;
+    for (std::size_t i = 0; i < signal_count; ++i) {
+      if (!(there.train.samples[i] > 0.0)) continue;
+      const double correlated = std::max(weight.correlation[i], other.weight.correlation[i]),
+                   noise = problem.sigma[i] / other.problem.sigma[i];
+      odds += misfit(there.train.samples[i], correlated, there.train.mean(i)) -
+              misfit(there.train.samples[i], correlated, here.train.mean(i) * noise * noise);
+    }
+    return odds;
+  }
+
   /// Whether it closes so much more of the gap in its shorter windows that these are believed instead.
   bool closes_more_than(const Attempt& longer) const {
     return left() < decision.short_windows_lower * longer.left();

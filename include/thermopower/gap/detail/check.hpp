@@ -229,8 +229,7 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
                                std::vector<Finding>& findings) {
   if (model.own || !model.has_thermal() || !holds(Rule::heat_between_rows)) return;
   const auto heat_of = [&](const PreparedRecording& one) {
-    const Inputs& inputs = one.inputs();
-    return plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs)).heat_W;
+    return heat_at_rows(model, catalogue, one.inputs());
   };
   const auto is_heated = [](const PreparedRecording& one) {
     return one.inputs().judged(Signal::motor_C) &&
@@ -245,22 +244,8 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
   const HeatBetweenRows between = seen_in(checked.train);
   const std::optional<double> share = between.share();
   if (!share || between.differs_from(seen_in(checked.held_out))) return;
-  const bool late = *share == 1.0;
   for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
-    findings.push_back(
-        {FindingKind::sampled_command,
-         Severity::warning,
-         one.recording().name,
-         heat_column(one.inputs()),
-         late ? "is that of the interval before its row, as motor_C shows: it is used for that"
-              : "was switched between the rows, as motor_C shows: the next row's is in force for " +
-                    short_number(100.0 * *share) +
-                    " % of an interval on average, and what a simulation wanders by not knowing more "
-                    "counts as noise",
-         late ? "log the power that is set until the next row"
-              : "log the power when it is switched, or its mean between the rows",
-         FindingAction::none,
-         {}});
+    findings.push_back(switched_between_rows(one.recording().name, one.inputs(), *share));
     one.take_next_before_it(switched_share(one.inputs(), heat_of(one), *share));
   });
 }

@@ -10,6 +10,7 @@
 #include <thermopower/gap/detail/cause_search.hpp>
 #include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/detail/posing.hpp>
+#include <thermopower/gap/detail/power_between_rows.hpp>
 #include <thermopower/gap/fit/curve_ranges.hpp>
 #include <thermopower/gap/where/localisation.hpp>
 #include <thermopower/gap/where/occurrence.hpp>
@@ -71,6 +72,16 @@ public:
           .run();
     };
     Attempt attempt = search(effort_may_answer);
+    const PowerBetweenRows power(posing_, train_inputs_, held_out_inputs_);
+    if (const double share = power.share_by_constants(); share > 0.0) {
+      power.let_change(share);
+      Attempt between = search(effort_may_answer);
+      const bool changes = between.likelier_than(attempt) > 0.0;
+      if (changes) attempt = std::move(between);
+      else power.let_change(0.0);
+      for (std::size_t i = 0; changes && i < train_inputs_.size(); ++i)
+        result_.findings.push_back(switched_between_rows(train_recordings_[i].name, train_inputs_[i], share));
+    }
     const bool is_denied = effort_is_measured() && leave_out_what_effort_denies(attempt.candidates);
     Answer answer = choose(attempt.candidates, model_);
     const bool leaves_a_gap =

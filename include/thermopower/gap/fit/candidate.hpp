@@ -23,6 +23,7 @@ struct Candidate {
   SignalSums held_out;    ///< as a gap is judged, in units of the noise floor; empty until somebody looks
   int hidden_starts = 0;  ///< starts that the held-out score fitted, because nobody measures them
   double deviance = 0.0;  ///< twice the negative log evidence, without the shared constant
+  double penalty = 0.0;   ///< the part of that which its freedom costs
   double train_deviance = 0.0;     ///< what the training data alone say, no penalty counted
   double held_out_deviance = 0.0;  ///< what the held-out data alone say; 0 until somebody looks
   double against = 0.0;      ///< log odds of the best candidate against it, >= 0; imperfect models considered

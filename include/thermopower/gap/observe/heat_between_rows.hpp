@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/jackknife.hpp>
 #include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
@@ -189,11 +191,48 @@ inline Eigen::VectorXd switched_share(const Inputs& inputs, const Eigen::VectorX
   return shares;
 }
 
+/// The heat of each row, by the model's law. @param inputs  whose inputs hold until the next row
+inline Eigen::VectorXd heat_at_rows(const Model& model, const Catalogue& catalogue, const Inputs& inputs) {
+  return plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs)).heat_W;
+}
+
+/// Whether a loop set the power anew at most rows where it was between its ends. It may have done so between the rows as well, and
+/// answered the noise of the very readings that would tell.
+inline bool is_set_anew(const Inputs& inputs) {
+  const Eigen::VectorXd& power = inputs.power_param;
+  if (!inputs.judged(Signal::motor_C) || inputs.heat != HeatSource::law || inputs.next_share.size() > 0 ||
+      inputs.target_C.size() > 0 || power.size() < 2)
+    return false;
+  const double least = power.minCoeff(), most = power.maxCoeff();
+  Eigen::Index between = 0, changes = 0;
+  for (Eigen::Index row = 1; row < power.size(); ++row)
+    if (power[row] > least && power[row] < most) ++between, changes += power[row] != power[row - 1];
+  return 2 * changes > between;
+}
+
 /// The column that tells the heat.
 inline std::string heat_column(const Inputs& inputs) {
   if (inputs.heat_W.size() > 0) return "heat_W";
   if (inputs.heat == HeatSource::law) return "power_param";
   return inputs.heat == HeatSource::drive ? "drive_A" : "current_A";
+}
+
+/// What is said of a recording whose power was not held until the next row. @param share  as HeatBetweenRows::share()
+inline Finding switched_between_rows(const std::string& recording, const Inputs& inputs, double share) {
+  const bool late = share == 1.0;
+  return {FindingKind::sampled_command,
+          Severity::warning,
+          recording,
+          heat_column(inputs),
+          late ? "is that of the interval before its row, as motor_C shows: it is used for that"
+               : "was switched between the rows, as motor_C shows: the next row's is in force for " +
+                     short_number(100.0 * share) +
+                     " % of an interval on average, and what a simulation wanders by not knowing more "
+                     "counts as noise",
+          late ? "log the power that is set until the next row"
+               : "log the power when it is switched, or its mean between the rows",
+          FindingAction::none,
+          {}};
 }
 
 }  // namespace thermopower::gap::engine

@@ -26,7 +26,12 @@ struct SecondThermalMass {
             "s C dT/dt = P - k (T - H), (1 - s) C dH/dt = k (T - H) - G (H - Ta)",
             "The heated winding is coupled to a housing that loses the heat: steps begin and end faster than "
             "one mass allows.",
-            {parameter(winding_share, "winding_share").unit("1").within(0.01, 0.97).starts({0.12, 0.4}),
+            {// With all of the capacity in the winding there is no housing.
+             parameter(winding_share, "winding_share")
+                 .unit("1")
+                 .within(0.01, 0.97)
+                 .starts({0.12, 0.4})
+                 .absent_at(0.97),
              parameter(coupling_W_per_K, "coupling")
                  .unit("W/K")
                  .within(1e-3, 1e3)
