@@ -120,10 +120,11 @@ inline bool was_looked_for(const Parameter& parameter, const Coordinate& one) {
 }
 
 /// Marks explanations of which a cause may be absent. The 95 % intervals of all its sizes hold the value without it, the data tell
-/// nothing of one of its parameters, so that it stands for something simpler, or it is no more than a constant that moved. Two that do the same from opposite sides (a friction that differs by direction, and
-/// a constant torque) are told by their sum alone. Parameters that are known by their order of magnitude, and details of a
-/// shape, are not asked. An interval is one of a valley that is straight. If the set without the cause was fitted and is
-/// far behind, the cause is there, whatever the length of the valley along which it trades with a constant.
+/// nothing of one of its parameters, so that it stands for something simpler, or it is no more than a constant that moved. Two that
+/// do the same from opposite sides (a friction that differs by direction, and a constant torque) are told by their sum alone. Details
+/// of a shape are not asked, and parameters that are known by their order of magnitude have no value without the cause. An interval is
+/// one of a valley that is straight. If the set without the cause was fitted and is far behind in training, the cause is there,
+/// whatever the length of the valley along which it trades with a constant.
 inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model, const Weight& weight) {
   // On held-out data a start that nobody measures may do what a cause does not.
   const auto misfit = [&](const Candidate& one) { return misfit_of(one.train, weight.correlation); };

@@ -10,6 +10,9 @@
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/report/parts.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -43,15 +46,14 @@ struct Attempt {
   double likelier_than(const Attempt& other) const {
     const Candidate &here = candidates[likeliest(candidates)],
                     &there = other.candidates[likeliest(other.candidates)];
-    double odds = there.penalty - here.penalty;
+    SignalSums in_its_noise = here.train;
+    std::array<double, signal_count> correlation{};
     for (std::size_t i = 0; i < signal_count; ++i) {
-      if (!(there.train.samples[i] > 0.0)) continue;
-      const double correlated = std::max(weight.correlation[i], other.weight.correlation[i]),
-                   noise = problem.sigma[i] / other.problem.sigma[i];
-      odds += misfit(there.train.samples[i], correlated, there.train.mean(i)) -
-              misfit(there.train.samples[i], correlated, here.train.mean(i) * noise * noise);
+      in_its_noise.scale(i, problem.sigma[i] / other.problem.sigma[i]);
+      correlation[i] = std::max(weight.correlation[i], other.weight.correlation[i]);
     }
-    return odds;
+    return there.penalty - here.penalty + misfit_of(there.train, correlation) -
+           misfit_of(in_its_noise, correlation);
   }
 
   /// Whether it closes so much more of the gap in its shorter windows that these are believed instead.

@@ -312,23 +312,21 @@ private:
     Candidate constants = only_constants ? chosen : likeliest_constants(candidates);
     const std::vector<ConstantEstimate> refitted =
         constants_of(constants, model_, only_constants ? weight : correlation_of(constants, attempt.problem));
-    const auto are_within = [](const std::vector<ConstantEstimate>& list) {
-      return std::all_of(list.begin(), list.end(),
-                         [](const ConstantEstimate& one) { return one.within_known; });
-    };
     const std::vector<ConstantEstimate> of_chosen =
         only_constants ? refitted : constants_of(chosen, model_, weight);
-    if (only_constants || !are_within(of_chosen)) result_.numbers.common_factor = common_factor_found();
+    const bool spares_constants = beyond_known(of_chosen).empty();
+    if (only_constants || !spares_constants) result_.numbers.common_factor = common_factor_found();
     const bool is_shared = only_constants ? share_a_factor(refitted) : is_another_supply(chosen, of_chosen);
     if (result_.numbers.common_factor == CommonFactor::none && is_shared)
       result_.numbers.common_factor = CommonFactor::of_no_constant;
     const std::vector<int> beyond = beyond_known(refitted);
     Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
                                              : decide(result_.numbers, only_constants,
-                                                      static_cast<int>(beyond.size()), are_within(of_chosen));
-    const bool is_named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
-                          decided.verdict == Verdict::partial;
-    if (is_named && !only_constants && !has_readings_enough(chosen))
+                                                      static_cast<int>(beyond.size()), spares_constants);
+    const auto names_a_cause = [](Verdict verdict) {
+      return verdict == Verdict::explained || verdict == Verdict::ambiguous || verdict == Verdict::partial;
+    };
+    if (names_a_cause(decided.verdict) && !only_constants && !has_readings_enough(chosen))
       decided = {Verdict::unexplained, Reason::no_explanation_likely};
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
@@ -337,8 +335,7 @@ private:
                               decided.reason == Reason::constants_moved ||
                               decided.reason == Reason::constant_closes_most ||
                               (decided.reason == Reason::common_factor && only_constants);
-    const bool named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
-                       decided.verdict == Verdict::partial;
+    const bool named = names_a_cause(decided.verdict);
     result_.constants = named && !by_constants ? of_chosen : refitted;
     note_recalibration(result_);
     if (!named || by_constants) keep_constants_alone(result_, model_);
