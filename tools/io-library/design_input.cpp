@@ -172,15 +172,16 @@ std::vector<FittedCoordinate> coordinates(const Json& block) {
   return list;
 }
 
-RankedExplanation explanation(const Json& entry) {
+RankedExplanation explanation(const JsonText& file, const Json& entry) {
   RankedExplanation one;
   one.effects = entry.at("effects").get<std::vector<std::string>>();
   one.probability = number_or_nan(entry.at("probability"));
   one.held_out_ratio = number_or_nan(entry.at("held_out_ratio"));
   one.train_gain = number_or_nan(entry.at("train_gain"));
-  one.at_bound = entry.at("at_bound").get<bool>();
-  one.absorbed = entry.at("absorbed").get<bool>();
-  one.refused = entry.at("refused").get<bool>();
+  const std::optional<Lacks> lacks = lacks_of(entry.at("lacks").get<std::string>());
+  if (!lacks)
+    file.fail("/ranking", "lacks " + JsonText::shown(entry["lacks"]) + "; expected such as nothing or room");
+  one.lacks = *lacks;
   one.fitted = coordinates(entry.at("fitted"));
   one.fixed = coordinates(entry.at("fixed"));
   const Json& triangle = entry.at("fitted").at("covariance");
@@ -248,7 +249,7 @@ design::DiagnosedGap parse_report(const std::string& name, const std::string& te
                                                   number_or_nan(score.at("after"))));
       if (score.at("horizon_s").is_number()) gap.horizon_s = score["horizon_s"].get<double>();
     }
-    for (const Json& entry : root.at("ranking")) gap.ranking.push_back(explanation(entry));
+    for (const Json& entry : root.at("ranking")) gap.ranking.push_back(explanation(file, entry));
   } catch (const Json::exception& error) {
     std::string what = error.what();
     const auto at = what.find("] ");

@@ -639,7 +639,7 @@ private:
     const bool chosen = is_chosen(one) && has_cause();
     out_ += std::string("<tr") +
             (chosen                        ? " class=\"chosen\""
-             : one.refused || one.absorbed ? " class=\"out\""
+             : one.lacks != Lacks::nothing ? " class=\"out\""
                                            : "") +
             "><td class=\"t\">" +
             (one.effects.empty() ? "nothing is missing" : breakable(joined(one.effects)));
@@ -653,9 +653,7 @@ private:
         add(breakable(parameter.name) + " = " + with_unit(readable(parameter.value), parameter.unit) + " " +
             known_to(parameter));
     }
-    if (one.absorbed) add("re-calibration imitates it: this recording cannot show it");
-    if (one.at_bound) add("a parameter ended on its bound");
-    if (one.refused) add("refused: held-out data gets worse");
+    if (one.lacks != Lacks::nothing) add(in_words(one.lacks).words);
     if (const std::string why = why_less_likely(one); !why.empty()) add(why);
     std::string like;
     for (std::size_t i = 0; i < std::min<std::size_t>(3, one.confusable.size()); ++i)
@@ -674,7 +672,7 @@ private:
 
   // What speaks against an explanation that leaves less on held-out data than the chosen one.
   std::string why_less_likely(const RankedExplanation& one) const {
-    if (!has_cause() || one.refused || one.absorbed || one.at_bound || !(one.held_out_ratio > 0.0)) return {};
+    if (!has_cause() || one.lacks != Lacks::nothing || !(one.held_out_ratio > 0.0)) return {};
     for (const RankedExplanation& chosen : d_.ranking) {
       if (!is_chosen(chosen)) continue;
       if (!(one.held_out_ratio < chosen.held_out_ratio) || one.probability >= chosen.probability) return {};

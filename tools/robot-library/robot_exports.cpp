@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double two_sided_95 = 1.96;  // standard errors
 
-std::string number(double value) {
+std::string four_digits(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.4g", value == 0.0 ? 0.0 : value);
   return text;
@@ -60,7 +60,7 @@ std::vector<std::string> left_over(const JointDiagnosis& joint) {
     const bool has_place = change.name == "armature" || change.name == "damping" ||
                            change.name == "friction" || change.name == "effort_scale";
     if (!has_place)
-      out.push_back(change.name + " " + number(change.to) + (change.unit == "1" ? "" : " " + change.unit));
+      out.push_back(change.name + " " + four_digits(change.to) + (change.unit == "1" ? "" : " " + change.unit));
   }
   return out;
 }
@@ -68,7 +68,7 @@ std::vector<std::string> left_over(const JointDiagnosis& joint) {
 std::string steps_text(const RobotDiagnosis& robot) {
   double delay = 0.0;
   for (const JointDiagnosis& joint : robot.joints) delay = std::max(delay, joint.found.delay_s);
-  return number(delay);
+  return four_digits(delay);
 }
 
 const char* program_name(TrainingFormat format) {
@@ -114,16 +114,16 @@ AmendedFile training_file(const RobotDiagnosis& robot, TrainingFormat format) {
     }
     const JointDynamics& d = joint.found;
     std::vector<std::string> rest = left_over(joint);
-    std::vector<std::pair<std::string, std::string>> numbers{{"stiffness", number(found_kp(model, d))},
-                                                             {"damping", number(found_kd(model, d))},
-                                                             {"armature", number(d.armature)}};
+    std::vector<std::pair<std::string, std::string>> numbers{{"stiffness", four_digits(found_kp(model, d))},
+                                                             {"damping", four_digits(found_kd(model, d))},
+                                                             {"armature", four_digits(d.armature)}};
     const bool limited = std::isfinite(model.effort_limit);
     if (format == TrainingFormat::isaac_lab) {
       numbers.insert(numbers.begin(), {"joint_names_expr", "[" + quoted(pattern(joint.name)) + "]"});
-      numbers.emplace_back("friction", number(d.friction + d.stribeck));
-      numbers.emplace_back("dynamic_friction", number(d.friction));
-      numbers.emplace_back("viscous_friction", number(d.damping));
-      if (limited) numbers.emplace_back("effort_limit", number(model.effort_limit));
+      numbers.emplace_back("friction", four_digits(d.friction + d.stribeck));
+      numbers.emplace_back("dynamic_friction", four_digits(d.friction));
+      numbers.emplace_back("viscous_friction", four_digits(d.damping));
+      if (limited) numbers.emplace_back("effort_limit", four_digits(model.effort_limit));
       numbers.emplace_back("min_delay", "DELAY_STEPS");
       numbers.emplace_back("max_delay", "DELAY_STEPS");
       rest.erase(std::remove_if(rest.begin(), rest.end(),
@@ -132,20 +132,20 @@ AmendedFile training_file(const RobotDiagnosis& robot, TrainingFormat format) {
       text += "    " + quoted(joint.name) + ": DelayedPDActuatorCfg(" + call(numbers) + "),\n";
     } else if (format == TrainingFormat::mjlab) {
       // Passive damping and the servo's act alike: both follow the rate.
-      numbers[1].second = number(found_kd(model, d) + d.damping - joint.configured.damping);
+      numbers[1].second = four_digits(found_kd(model, d) + d.damping - joint.configured.damping);
       numbers.insert(numbers.begin(), {"target_names_expr", "(" + quoted(pattern(joint.name)) + ",)"});
-      numbers.emplace_back("frictionloss", number(d.friction));
-      if (limited) numbers.emplace_back("effort_limit", number(model.effort_limit));
+      numbers.emplace_back("frictionloss", four_digits(d.friction));
+      if (limited) numbers.emplace_back("effort_limit", four_digits(model.effort_limit));
       numbers.emplace_back("delay_min_lag", "DELAY_STEPS");
       numbers.emplace_back("delay_max_lag", "DELAY_STEPS");
-      text += "    # The joint keeps its damping of " + number(joint.configured.damping) +
+      text += "    # The joint keeps its damping of " + four_digits(joint.configured.damping) +
               " N m s/rad in the MJCF; what it has more or less is in the servo's.\n";
       text += "    BuiltinPositionActuatorCfg(" + call(numbers) + "),\n";
     } else {
-      text += "    " + quoted(joint.name) + ": dict(ke=" + number(found_kp(model, d)) +
-              ", kd=" + number(found_kd(model, d) + d.damping) + ", armature=" + number(d.armature) +
-              ", friction=" + number(d.friction) +
-              (limited ? ", effort_limit=" + number(model.effort_limit) : "") + "),\n";
+      text += "    " + quoted(joint.name) + ": dict(ke=" + four_digits(found_kp(model, d)) +
+              ", kd=" + four_digits(found_kd(model, d) + d.damping) + ", armature=" + four_digits(d.armature) +
+              ", friction=" + four_digits(d.friction) +
+              (limited ? ", effort_limit=" + four_digits(model.effort_limit) : "") + "),\n";
     }
     if (!rest.empty()) {
       std::string said;

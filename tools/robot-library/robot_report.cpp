@@ -15,21 +15,21 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // JSON has no number for what is not known.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json json_of(const Gap& gap, const char* unit) {
   return {{"unit", unit},
-          {"before", number(gap.before)},
-          {"recalibrated", number(gap.recalibrated)},
-          {"after", number(gap.after)}};
+          {"before", json_number(gap.before)},
+          {"recalibrated", json_number(gap.recalibrated)},
+          {"after", json_number(gap.after)}};
 }
 
 Json json_of(const Change& change) {
   return {{"name", change.name},
           {"unit", change.unit},
-          {"from", number(change.from)},
-          {"to", number(change.to)},
-          {"standard_error", number(change.error)}};
+          {"from", json_number(change.from)},
+          {"to", json_number(change.to)},
+          {"standard_error", json_number(change.error)}};
 }
 
 Json json_of(const Term& term) {
@@ -37,11 +37,11 @@ Json json_of(const Term& term) {
   for (const Coefficient& one : term.numbers)
     numbers.push_back({{"name", one.name},
                        {"unit", one.unit},
-                       {"value", number(one.value)},
-                       {"standard_error", number(one.error)}});
+                       {"value", json_number(one.value)},
+                       {"standard_error", json_number(one.error)}});
   for (const Family one : term.predicts_alike) alike.push_back(to_string(one));
   return {{"effect", to_string(term.family)},
-          {"effort_left_share", number(term.kept)},
+          {"effort_left_share", json_number(term.kept)},
           {"numbers", numbers},
           {"predicts_alike", alike}};
 }
@@ -69,7 +69,7 @@ Json json_of(const std::vector<WiringFinding>& findings, const Robot& robot) {
     out.push_back({{"kind", to_string(one.fault)},
                    {"quantity", quantity_word(one.quantity)},
                    {"joints", joints},
-                   {"number", number(one.number)},
+                   {"number", json_number(one.number)},
                    {"action", one.mended ? "mended" : "none"},
                    {"text", one.text}});
   }
@@ -84,10 +84,10 @@ std::string robot_json(const RobotDiagnosis& robot) {
            {"log", robot.log},
            {"rows", robot.rows},
            {"held_out_rows", robot.held_out_rows},
-           {"step_s", number(robot.step_s)},
-           {"filter_Hz", number(robot.cutoff_Hz)},
+           {"step_s", json_number(robot.step_s)},
+           {"filter_Hz", json_number(robot.cutoff_Hz)},
            {"effort", robot.effort_is_measured ? "measured" : "from_targets"},
-           {"delay_s", number(robot.delay_s)},
+           {"delay_s", json_number(robot.delay_s)},
            {"on_ground", robot.stands_on_ground},
            {"wiring", json_of(robot.wiring, robot.robot)},
            {"notes", robot.notes},
@@ -105,10 +105,10 @@ std::string robot_json(const RobotDiagnosis& robot) {
     for (const Change& change : joint.changes) changes.push_back(json_of(change));
     one["cause"] = causes;
     one["changes"] = changes;
-    one["effort_rms"] = number(joint.effort_rms);
+    one["effort_rms"] = json_number(joint.effort_rms);
     one["effort"] = json_of(joint.effort, "N m");
     one["tracking"] = json_of(joint.tracking, "rad");
-    one["taken"] = joint.causes.empty() ? Json(nullptr) : number(share_taken(joint));
+    one["taken"] = joint.causes.empty() ? Json(nullptr) : json_number(share_taken(joint));
     if (joint.differs) one["differs"] = joint.difference;
     joints.push_back(one);
   }
@@ -124,9 +124,9 @@ std::string robot_json(const RobotDiagnosis& robot) {
     for (const Change& one : group.pooled)
       pooled.push_back({{"name", one.name},
                         {"unit", one.unit},
-                        {"from", number(one.from)},
-                        {"mean", number(one.to)},
-                        {"spread", number(one.error)}});
+                        {"from", json_number(one.from)},
+                        {"mean", json_number(one.to)},
+                        {"spread", json_number(one.error)}});
     groups.push_back({{"name", group.name},
                       {"joints", members},
                       {"cause", causes},
@@ -144,17 +144,17 @@ std::string impact_json(const RobotDiagnosis& robot, const Impact& impact) {
                                               : Json(robot.joints[static_cast<std::size_t>(row.joint)].name)},
                       {"cause", row.cause},
                       {"told", row.told},
-                      {"share", number(row.share)},
-                      {"with_it_alone", number(row.put_in)},
-                      {"without_it_alone", number(row.taken_out)}});
+                      {"share", json_number(row.share)},
+                      {"with_it_alone", json_number(row.put_in)},
+                      {"without_it_alone", json_number(row.taken_out)}});
   const Json out{{"format", "thermopower-robot-impact/1"},
                  {"robot", robot.robot.name},
                  {"log", robot.log},
                  {"of", impact.of.empty() ? Json(nullptr) : Json(impact.of)},
                  {"unit", impact.unit},
-                 {"configured", number(impact.configured)},
-                 {"with_all_causes", number(impact.found)},
-                 {"replayed_s", number(impact.replayed_s)},
+                 {"configured", json_number(impact.configured)},
+                 {"with_all_causes", json_number(impact.found)},
+                 {"replayed_s", json_number(impact.replayed_s)},
                  {"causes", causes}};
   return out.dump(1) + "\n";
 }

@@ -42,7 +42,7 @@ const char* unit_word(Role role, double factor) {
   return "another unit";
 }
 
-std::string number(double value) {
+std::string three_digits(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
@@ -204,10 +204,10 @@ private:
       if (role == Role::target && std::fabs(wires.offset[j] - wiring_.position.offset[j]) < 1e-9) continue;
       const std::string text =
           role == Role::target
-              ? "the targets of " + robot_.joints[j].name + " lie " + number(wires.offset[j]) +
+              ? "the targets of " + robot_.joints[j].name + " lie " + three_digits(wires.offset[j]) +
                     " rad above its positions for good: one of the two has another zero"
               : "the positions of " + robot_.joints[j].name +
-                    " count from another zero: " + number(wires.offset[j]) + " rad are taken off";
+                    " count from another zero: " + three_digits(wires.offset[j]) + " rad are taken off";
       add(WiringFault::offset, role, {static_cast<int>(j)}, wires.offset[j], text);
     }
   }

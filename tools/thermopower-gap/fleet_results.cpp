@@ -6,6 +6,7 @@
 #include "html_text.hpp"
 
 #include <thermopower/gap/fit/in_parallel.hpp>
+#include <thermopower/gap/lacks.hpp>
 #include <thermopower/io/output_files.hpp>
 #include <thermopower/io/text_table.hpp>
 #include <thermopower/plant/calibration_id.hpp>
@@ -52,7 +53,7 @@ pool::FittedExplanation explanation_of(const nlohmann::json& entry) {
   one.train_gain = number_of(entry, "train_gain");
   one.held_out_gain = number_of(entry, "held_out_gain");
   one.hidden_starts = entry.value("hidden_starts", 0);
-  one.on_bounds = entry.value("at_bound", false);
+  one.on_bounds = entry.at("lacks") == thermopower::gap::in_words(thermopower::gap::Lacks::room).id;
   const nlohmann::json& fitted = entry.at("fitted");
   one.names = fitted.at("names").get<std::vector<std::string>>();
   one.logarithmic = fitted.at("logarithmic").get<std::vector<bool>>();

@@ -165,7 +165,7 @@ inline std::vector<Possible> still_open(const DiagnosedGap& gap, const Catalogue
                                         const DesignOptions& options = {}) {
   std::vector<const RankedExplanation*> order;
   for (const RankedExplanation& one : gap.ranking)
-    if (!one.at_bound || one.probability >= options.likely) order.push_back(&one);
+    if (one.lacks != Lacks::room || one.probability >= options.likely) order.push_back(&one);
   const auto ratio = [](const RankedExplanation* one) {
     return std::isfinite(one->held_out_ratio) ? one->held_out_ratio : 1e9;
   };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/finding.hpp>
+#include <thermopower/gap/lacks.hpp>
 #include <thermopower/gap/reason.hpp>
 #include <thermopower/gap/verdict.hpp>
 #include <thermopower/gap/model.hpp>
@@ -143,9 +144,7 @@ struct RankedExplanation {
   double score = 0.0;                ///< reduced chi^2 on training data
   double delta_score = 0.0;          ///< evidence against it relative to the best, >= 0 (twice a log odds)
   double held_out_ratio = 0.0;       ///< held-out score over that of "nothing is missing"; NaN: not looked at
-  bool absorbed = false;             ///< re-calibration imitates it: this recording cannot show it
-  bool at_bound = false;             ///< a cause ended on the bounds of its range, and is none
-  bool refused = false;              ///< makes held-out data worse
+  Lacks lacks = Lacks::nothing;      ///< why it is not named
   std::vector<ParameterEstimate> parameters;  ///< named `<effect>.<parameter>`
   std::vector<Likeness> confusable;           ///< others with a likeness of 0.9 or more
   /// Twice the log of how much likelier it makes the training data than the empty explanation does. Residuals have an

@@ -138,7 +138,7 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
     });
   };
   for (Candidate& one : candidates) {
-    one.doubtful = false;
+    one.open = one.doubtful = false;
     if (one.explanation.effects.empty() || !one.held_out.any()) continue;
     const Covariance covariance = covariance_of(one, weight);
     if (covariance.of.size() == 0) continue;
@@ -156,8 +156,8 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
         is_there = is_there || parameter.absent_at < interval.low || parameter.absent_at > interval.high;
       }
       const bool is_a_constant = in_fact.the_same && plant::is_calibration(in_fact.cause);
-      one.doubtful =
-          one.doubtful || is_a_constant || !is_told || (has_a_size && !is_there && !is_missed(one, entry));
+      one.open = one.open || !is_told;
+      one.doubtful = one.doubtful || is_a_constant || (has_a_size && !is_there && !is_missed(one, entry));
     }
   }
 }

@@ -92,15 +92,15 @@ public:
       for (Candidate& one : candidates_) one.probability /= sum;
   }
 
-  /// The answer: the set that forward selection stops at, or what is likeliest where that is out of the running, with the class of what predicts
-  /// alike and acts in the same place. Where that class is not likely, and a part of the set has one that is, that part.
+  /// The answer: the likeliest of what is no larger than the set that forward selection stops at, or of all where that set is out of the
+  /// running, with the class of what predicts alike and acts in the same place. Where that class is not likely, and a part of the set has one that is, that part.
   /// @param set  of the effort
   Answer answer(const InverseScore& set) const {
     const std::vector<const CatalogueEntry*> told = sorted(set.effects);
     std::size_t whole = likeliest(candidates_);
     for (std::size_t i = 0; i < candidates_.size(); ++i)
       if (sorted(candidates_[i].explanation.effects) == told && candidates_[i].probability > hardly)
-        whole = likeliest_alike(i);
+        whole = likeliest_as_simple(i);
     Answer found = answer_of(whole);
     if (found.probability >= verdict_limits.likely) return found;
     for (std::size_t i = 1; i < candidates_.size(); ++i) {
@@ -122,13 +122,12 @@ private:
     return list;
   }
 
-  /// The likeliest of what predicts like a candidate, with as many causes or fewer, and no curve in place of a name.
-  std::size_t likeliest_alike(std::size_t place) const {
+  /// The likeliest of what has as many causes as a candidate or fewer, and no curve in place of a name.
+  std::size_t likeliest_as_simple(std::size_t place) const {
     std::size_t best = place;
     for (std::size_t i = 1; i < candidates_.size(); ++i)
       if (candidates_[i].explanation.size() <= candidates_[place].explanation.size() &&
           candidates_[i].explanation.has_curve() <= candidates_[place].explanation.has_curve() &&
-          likeness(signatures_[i], signatures_[place]) >= alike_from &&
           candidates_[i].probability > candidates_[best].probability)
         best = i;
     return best;

@@ -251,8 +251,8 @@ inline bool is_at_the_noise(const Candidate& candidate) {
 /// Whether a candidate may be named: it was judged on held-out data and does not make them worse, does not stand in for another
 /// one, and all of it is there.
 inline bool in_the_running(const Candidate& candidate) {
-  return !candidate.on_bounds && !candidate.idle && !candidate.doubtful && !candidate.makes_worse &&
-         candidate.held_out.any();
+  return !candidate.on_bounds && !candidate.idle && !candidate.open && !candidate.doubtful &&
+         !candidate.makes_worse && candidate.held_out.any();
 }
 
 /// Whether two parameters of a candidate are equal as far as it matters, with what the data leave open.

@@ -60,6 +60,7 @@ private:
       search.try_late();
       search.try_beside_dear_constants();
       search.try_third_causes();
+      search.try_simpler_relatives();
     }
     return search.take();
   }

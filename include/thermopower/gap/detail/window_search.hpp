@@ -193,6 +193,28 @@ public:
     weigh_all();
   }
 
+  /// Where a cause of the likeliest set has a simpler relative: the set with that one in its place. Beside a second cause
+  /// nobody has tried it, and both may do the same there.
+  void try_simpler_relatives() {
+    const std::size_t place = likeliest(attempt_.candidates);
+    const Explanation set = attempt_.candidates[place].explanation;
+    if (set.effects.size() < 2) return;
+    std::vector<Promise> sets;
+    for (std::size_t near = 1; near < attempt_.candidates.size(); ++near) {
+      const Explanation& one = attempt_.candidates[near].explanation;
+      if (one.effects.size() != 1 || set.includes(one)) continue;
+      Explanation simpler = one;
+      for (const CatalogueEntry* entry : set.effects)
+        if (!entry->info.where_equal || entry->info.where_equal->cause != one.effects.front()->info.id)
+          simpler.effects.push_back(entry);
+      if (simpler.effects.size() == set.effects.size() && !is_known(attempt_.candidates, simpler))
+        sets.push_back({{}, near, simpler});
+    }
+    if (sets.empty()) return;
+    add_sets(sets);
+    weigh_all();
+  }
+
   /// Whether the best explanation leaves room for a further cause.
   bool has_room() const { return !attempt_.best().train.within(decision.room_for_sets); }
 

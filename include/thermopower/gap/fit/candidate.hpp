@@ -31,7 +31,8 @@ struct Candidate {
   bool on_bounds = false;    ///< a cause ended on the bounds of its range, and is none
   bool settled = false;      ///< a fit goes nowhere from where it ended, as long as data and noise stay
   bool idle = false;      ///< another one says the same with less: moved constants alone, or a simpler cause
-  bool doubtful = false;  ///< a cause of a set may as well not be there: the others do what it does
+  bool open = false;      ///< the data leave a parameter of a cause open
+  bool doubtful = false;  ///< a cause may as well not be there: the others, or a constant, do what it does
   bool makes_worse = false;  ///< its causes make held-out data worse than refitted constants do
 
   /// Where the fit ended with the coordinate at this place of `list`: its value, in its unit.

@@ -21,8 +21,10 @@ struct ExperimentThresholds {
   double rows_per_window = 4.0;  ///< fewer say nothing about what happens between restarts of the axis
   double slow_axis_s =
       1.0;  ///< interval between rows of an axis that is odd: another unit is asked for first
-  double not_driven = 0.02;        ///< of the training data's largest command
-  double not_moving = 0.2;         ///< of the training data's range of a judged signal
+  double not_driven = 0.02;  ///< of the training data's largest command
+  double not_moving = 0.2;   ///< of the training data's range of a judged signal
+  double mostly =
+      0.5;  ///< of the range of a temperature: what cools by it, or stands next to what moves by it, tells something
   double same_rows = 0.9;          ///< share of equal rows of two recordings that are one
   Eigen::Index pattern_rows = 24;  ///< rows by which a recording is sought in another
 };
@@ -52,6 +54,18 @@ inline std::string command_column(const Inputs& inputs) {
 inline double range_of(const Inputs& inputs, Signal signal) {
   std::vector<double> values = finite_samples(inputs.of(signal));
   return quantile_of(values, 0.95) - quantile_of(values, 0.05);
+}
+
+/// Whether a body tells something though nothing drives it: it cools, or what is mounted next to it warms or cools as much.
+inline bool is_driven_by_others(const Inputs& inputs) {
+  constexpr ExperimentThresholds limit;
+  if (inputs.axis() || !inputs.bench() || !inputs.judged(Signal::motor_C)) return false;
+  const std::vector<double> own = finite_samples(inputs.of(Signal::motor_C));
+  std::vector<double> next = finite_samples(inputs.neighbour_C);
+  const double range = range_of(inputs, Signal::motor_C);
+  const bool cools = own.front() - own.back() > limit.mostly * range;
+  return range > 0.0 && (cools || (!next.empty() &&
+                                   quantile_of(next, 0.95) - quantile_of(next, 0.05) > limit.mostly * range));
 }
 
 /// Whether the outputs of `part` are those of some rows of `whole`.
@@ -115,7 +129,7 @@ inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording
         {kind, Severity::error, where.inputs().name, column, message, mend, FindingAction::none, {}});
   };
   double driven = 0.0, slowest_s = 0.0;
-  bool any_command = false;
+  bool any_command = false, by_others = false;
   const PreparedRecording* slow = nullptr;
   for (const auto* all : {&train, &held_out})
     for (const PreparedRecording& one : *all)
@@ -133,9 +147,10 @@ inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording
     const double most = largest_command(one.inputs());
     if (!std::isfinite(most)) continue;
     any_command = true;
+    by_others = by_others || is_driven_by_others(one.inputs());
     driven = std::max(driven, most);
   }
-  if (any_command && !(driven > 0.0) && !train.empty())
+  if (any_command && !(driven > 0.0) && !by_others && !train.empty())
     add(FindingKind::never_driven, train.front(), command_column(train.front().inputs()),
         "is 0 throughout: nothing was driven", "record while the actuator is driven at several levels");
   std::array<double, signal_count> ranges{};

@@ -66,6 +66,19 @@ inline void describe_fit(RankedExplanation& entry, const Candidate& one, const M
           {one.list[k].name, one.fit.point[static_cast<Eigen::Index>(k)], one.list[k].logarithmic, false});
 }
 
+/// What a candidate lacks to be named.
+/// @param is_imitated  refitted constants leave as much of the training residuals
+inline Lacks lacks_of(const Candidate& one, bool is_imitated) {
+  if (one.explanation.size() == 0) return Lacks::nothing;
+  if (one.on_bounds) return Lacks::room;
+  if (!one.held_out.any()) return Lacks::a_judgement;
+  if (one.makes_worse) return Lacks::use;
+  if (one.open) return Lacks::told_parameter;
+  if (one.doubtful) return Lacks::presence;
+  if (one.idle) return Lacks::something_own;
+  return is_imitated ? Lacks::difference : Lacks::nothing;
+}
+
 /// Every explanation weighed, likeliest first.
 inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, const FitProblem& problem,
                  const Weight& weight) {
@@ -94,9 +107,7 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
     }
     entry.score = samples > 0.0 ? squares / samples : 0.0;
     entry.held_out_ratio = held > 0.0 && one.held_out.any() ? std::sqrt(held_squares / held) : missing;
-    entry.refused = entry.held_out_ratio > 1.0;
-    entry.absorbed = one.explanation.size() > 0 && squares > decision.absorbed * whole;
-    entry.at_bound = one.on_bounds;
+    entry.lacks = lacks_of(one, squares > decision.absorbed * whole);
     entry.train_gain = empty.train_deviance - one.train_deviance;
     entry.held_out_gain = one.held_out.any() && empty.held_out.any()
                               ? empty.held_out_deviance - one.held_out_deviance
