@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 //
-// What each rule of the diagnosis is worth: how many answers change without it. Reads what ablation.sh left.
+// What each rule of the diagnosis is worth: how many ask for it, and how many answers change without it. Reads what ablation.sh left.
 //   gap_benchmark_ablation --dir DIR --out FILE.md [--real FOLDER] [--note TEXT] RULE ...
 // Reports with all rules are in DIR/reports (of real recordings in DIR/real/reports), those without one in DIR/reports_without_RULE.
 
@@ -27,10 +27,14 @@ public:
   /// @param truth  whether an answer to a case is right
   template <class Right>
   void compare(const std::string& job, const std::string& with, const std::string& without, Right&& right) {
-    const Verdict a = read_verdict(with), b = read_verdict(without);
-    const bool before = right(a), after = right(b);
+    const Verdict a = read_verdict(with);
+    const bool before = right(a);
     ++cases_;
     right_ += before;
+    if (!std::filesystem::exists(without)) return;  // it did not ask for the rule
+    ++asked_;
+    const Verdict b = read_verdict(without);
+    const bool after = right(b);
     if (before && !after) {
       ++change_.right_to_wrong;
       change_.jobs.push_back(job);
@@ -42,11 +46,12 @@ public:
   }
 
   int cases() const { return cases_; }
+  int asked() const { return asked_; }
   int right() const { return right_; }
   const Change& change() const { return change_; }
 
 private:
-  int cases_ = 0, right_ = 0;
+  int cases_ = 0, asked_ = 0, right_ = 0;
   Change change_;
 };
 
@@ -76,8 +81,8 @@ void print(std::ostream& out, const std::string& rule, const Answers& drawn, con
   out << "| `" << rule << "` |";
   for (const Answers* one : {&drawn, real})
     if (one != nullptr)
-      out << " " << one->change().right_to_wrong << " | " << one->change().wrong_to_right << " | "
-          << one->change().other << " |";
+      out << " " << one->asked() << " | " << one->change().right_to_wrong << " | "
+          << one->change().wrong_to_right << " | " << one->change().other << " |";
   std::string jobs;
   for (std::size_t i = 0; i < drawn.change().jobs.size() && i < 6; ++i)
     jobs += (i ? ", " : "") + drawn.change().jobs[i];
@@ -108,18 +113,19 @@ int main(int argc, char** argv) {
     const Answers all = of_benchmark(directory, rules.front());
     std::ofstream out(out_path);
     out << "# What each rule of the diagnosis is worth\n<!-- page gap_ablation -->\n\n"
-           "One rule is taken away at a time, and the same recordings are diagnosed again. The table says how many answers change. A rule\n"
-           "without which nothing becomes worse is removed. The rules are listed in `thermopower/gap/rule.hpp`.\n\n"
+           "One rule is taken away at a time, and the same recordings are diagnosed again. The table says how many asked for\n"
+           "it, because it would change something there, and how many answers change. A rule without which nothing becomes worse\n"
+           "is removed. The rules are listed in `thermopower/gap/rule.hpp`.\n\n"
         << (note.empty() ? "" : note + "\n\n") << "With all rules " << all.right() << " of " << all.cases()
         << " drawn recordings are answered rightly or honestly";
     if (!real.empty()) {
       const Answers measured = of_real(directory, real, rules.front());
       out << ", and " << measured.right() << " of " << measured.cases() << " real ones";
     }
-    out << ".\n\n| without | drawn: right to wrong | wrong to right | other answer |"
-        << (real.empty() ? "" : " real: right to wrong | wrong to right | other answer |")
-        << " drawn ones that become wrong |\n|---|---|---|---|" << (real.empty() ? "" : "---|---|---|")
-        << "---|\n";
+    out << ".\n\n| without | drawn: asked for it | right to wrong | wrong to right | other answer |"
+        << (real.empty() ? "" : " real: asked for it | right to wrong | wrong to right | other answer |")
+        << " drawn ones that become wrong |\n|---|---|---|---|---|"
+        << (real.empty() ? "" : "---|---|---|---|") << "---|\n";
     for (const std::string& rule : rules) {
       const Answers drawn = of_benchmark(directory, rule);
       if (real.empty()) {

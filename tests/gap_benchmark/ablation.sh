@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 the thermopower authors
 #
-# Judges the recordings of a benchmark directory with all rules, and again without each of them.
+# Judges the recordings of a benchmark directory with all rules, and those that asked for a rule again without it. A recording that did
+# not ask for a rule has the same answer without it.
 #   ablation.sh PROGRAM RULES TABLE DIR OUT [REAL]
 # PROGRAM is the build of the program that leaves out the rule named in THERMOPOWER_WITHOUT_RULE, RULES prints the rules, TABLE writes
 # the page OUT. REAL is a folder of real recordings: <case>/{model.json,train*.csv,heldout*.csv}, and truths.json.
@@ -22,17 +23,25 @@ if [ -n "$real" ]; then
     echo "$name $name"
   done >"$directory/real/jobs.txt"
 fi
-judge() {  # REPORTS
-  GAP_BENCHMARK_REPORTS=$1 sh "$here/judge.sh" "$program" "$directory" 2
-  [ -z "$real" ] || GAP_BENCHMARK_REPORTS=$1 GAP_BENCHMARK_CASES=$real sh "$here/judge.sh" "$program" "$directory/real" 2
+judge() {  # REPORTS JOBS
+  GAP_BENCHMARK_REPORTS=$1 GAP_BENCHMARK_JOBS=$2 sh "$here/judge.sh" "$program" "$directory" 2
+  [ -z "$real" ] ||
+    GAP_BENCHMARK_REPORTS=$1 GAP_BENCHMARK_JOBS=$2 GAP_BENCHMARK_CASES=$real sh "$here/judge.sh" "$program" "$directory/real" 2
+}
+asked() {  # RULE DIR: the jobs that asked for it
+  while read -r job rest; do
+    ! grep -q "^asked.* $1\( \|\$\)" "$2/reports/$job/summary.txt" || echo "$job $rest"
+  done <"$2/jobs.txt"
 }
 unset THERMOPOWER_WITHOUT_RULE || true
-judge reports
+judge reports jobs.txt
 for rule in $rules; do
   THERMOPOWER_WITHOUT_RULE=$rule
   export THERMOPOWER_WITHOUT_RULE
-  echo "without $rule" >&2
-  judge "reports_without_$rule"
+  asked "$rule" "$directory" >"$directory/asked.txt"
+  [ -z "$real" ] || asked "$rule" "$directory/real" >"$directory/real/asked.txt"
+  echo "without $rule: $(wc -l <"$directory/asked.txt") recordings" >&2
+  judge "reports_without_$rule" asked.txt
 done
 unset THERMOPOWER_WITHOUT_RULE
 # shellcheck disable=SC2086  # names without blanks

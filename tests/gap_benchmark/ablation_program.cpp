@@ -3,6 +3,7 @@
 //
 // `diagnose` of the program and nothing else, linked to the library in which a rule can be taken away: as judge.sh calls it.
 #include <thermopower/gap.hpp>
+#include <thermopower/gap/rule.hpp>
 #include <thermopower/io.hpp>
 
 #include <cstdio>
@@ -32,7 +33,9 @@ int main(int count, char** values) {
     io::OutputFiles files;
     files.put(report, io::report_json(diagnosis));
     files.commit();
-    std::printf("%s\n", gap::to_string(diagnosis.verdict));
+    std::printf("%s\nasked", gap::to_string(diagnosis.verdict));
+    for (const std::string& rule : gap::engine::rules_asked_for()) std::printf(" %s", rule.c_str());
+    std::printf("\n");
     return diagnosis.verdict == gap::Verdict::insufficient ? 4 : 0;
   } catch (const std::exception& problem) {
     std::fprintf(stderr, "gap_ablation_program: %s\n", problem.what());

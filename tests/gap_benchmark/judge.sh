@@ -50,7 +50,8 @@ if [ $# -lt 2 ]; then
 fi
 program=$1 directory=$2 at_once=${3:-2}
 [ -x "$program" ] || { echo "judge.sh: $program is no program" >&2; exit 2; }
-[ -r "$directory/jobs.txt" ] || { echo "judge.sh: $directory/jobs.txt is missing" >&2; exit 2; }
+jobs=$directory/${GAP_BENCHMARK_JOBS:-jobs.txt}
+[ -r "$jobs" ] || { echo "judge.sh: $jobs is missing" >&2; exit 2; }
 mkdir -p "$directory/${GAP_BENCHMARK_REPORTS:-reports}"
-# One line of jobs.txt is one run; a line's words become arguments.
-xargs -P "$at_once" -L 1 sh "$0" --one "$program" "$directory" <"$directory/jobs.txt"
+# One line of it is one run; a line's words become arguments.
+xargs -P "$at_once" -r -L 1 sh "$0" --one "$program" "$directory" <"$jobs"

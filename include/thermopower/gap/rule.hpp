@@ -6,13 +6,15 @@
 
 #ifdef THERMOPOWER_ABLATION
 #include <cstdlib>
+#include <set>
 #include <string>
 #endif
 
 /// @file rule.hpp
 /// The rules of the diagnosis by name, so that each can be taken away and its worth counted (target `gap_ablation`).
 ///
-/// To add a rule: one line in Rule, one in rule_names, and `if (!holds(Rule::name))` where it acts.
+/// To add a rule: one line in Rule, one in rule_names, and `holds(Rule::name)` where it acts. It is asked last, where all else says that
+/// the rule would change something: a recording that did not ask for a rule has the same answer without it.
 
 namespace thermopower::gap::engine {
 
@@ -82,8 +84,15 @@ static_assert(count_of(Rule{}) == static_cast<int>(Rule::constants_first) + 1, "
 inline const char* to_string(Rule rule) { return rule_names[static_cast<int>(rule)]; }
 
 #ifdef THERMOPOWER_ABLATION
+/// The rules that were asked for so far. Only one thread asks.
+inline std::set<std::string>& rules_asked_for() {
+  static std::set<std::string> asked;
+  return asked;
+}
+
 /// Whether a rule is in force: the one that the environment names in THERMOPOWER_WITHOUT_RULE is not.
 inline bool holds(Rule rule) {
+  rules_asked_for().insert(to_string(rule));
   static const char* const without = std::getenv("THERMOPOWER_WITHOUT_RULE");
   return without == nullptr || std::string(without) != to_string(rule);
 }

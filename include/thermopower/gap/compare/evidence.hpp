@@ -361,10 +361,9 @@ inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, con
 /// effect only fits noise.
 inline void mark_idle(std::vector<Candidate>& candidates) {
   for (Candidate& one : candidates) one.idle = false;
-  if (!holds(Rule::constants_first)) return;
   for (const Candidate& constants : candidates)
     if (constants.explanation.effects.empty() && !constants.explanation.released.empty() &&
-        is_at_the_noise(constants))
+        is_at_the_noise(constants) && holds(Rule::constants_first))
       for (Candidate& one : candidates) one.idle = one.idle || does_nothing_more(one, constants);
 }
 
@@ -382,12 +381,12 @@ inline bool has_the_same(const Candidate& set, const Explanation& alone, const M
 /// Marks candidates that another one says with less (is_in_fact()): all at once, so that a simpler one that is itself marked
 /// still counts. A cause that is so alone and has nothing of its own beside others either is none of a set.
 inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
-  if (!holds(Rule::twins)) return;
   std::vector<Candidate*> twins;
   for (Candidate& one : candidates)
     if (std::any_of(candidates.begin(), candidates.end(),
                     [&](const Candidate& simpler) { return is_in_fact(simpler, one, model); }))
       twins.push_back(&one);
+  if (twins.empty() || !holds(Rule::twins)) return;
   std::vector<const Explanation*> alone;
   for (Candidate* one : twins) {
     one->idle = true;

@@ -4,7 +4,9 @@
 
 #include <thermopower/gap/finding.hpp>
 #include <thermopower/gap/recording.hpp>
+#include <thermopower/gap/rule.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +18,13 @@ namespace thermopower::gap::engine {
 
 /// One entry per row: whether a sample of a column is not to be believed.
 typedef std::vector<char> RowMask;
+
+/// A mask as a rule makes it; none of its rows where the rule is taken away.
+inline RowMask by(Rule rule, RowMask mask) {
+  const auto is_set = [](char one) { return one != 0; };
+  if (std::any_of(mask.begin(), mask.end(), is_set) && !holds(rule)) mask.assign(mask.size(), 0);
+  return mask;
+}
 
 /// A number as sentences have it.
 inline std::string short_number(double value) {

@@ -114,7 +114,7 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
   constexpr FrameThresholds frames;
   constexpr Eigen::Index around = frames.around;
   RowMask mask;
-  if (outputs.empty() || !holds(Rule::repeated_frames)) return mask;
+  if (outputs.empty()) return mask;
   const Eigen::Index rows = outputs.front()->size();
   mask.assign(static_cast<std::size_t>(rows), 0);
   // 0: all outputs differ from the row before; 1: some are the same; 2: all are.
@@ -259,7 +259,7 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
         for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
       i = end;
     }
-  return mask;
+  return by(Rule::repeated_frames, std::move(mask));
 }
 
 /// What a column reads when its sensor says nothing: the value that most of its masked samples share; NaN where there is
@@ -285,7 +285,7 @@ inline RowMask lost_frames(const std::vector<const Eigen::VectorXd*>& recorded,
                            const std::vector<double>& defaults, const std::vector<RunSpan>& runs) {
   constexpr MaskThresholds limit;
   RowMask mask;
-  if (recorded.size() < 2 || !holds(Rule::lost_frames)) return mask;
+  if (recorded.size() < 2) return mask;
   const Eigen::Index rows = recorded.front()->size();
   mask.assign(static_cast<std::size_t>(rows), 0);
   std::vector<double> least;
@@ -311,7 +311,7 @@ inline RowMask lost_frames(const std::vector<const Eigen::VectorXd*>& recorded,
       }
       i = end;
     }
-  return mask;
+  return by(Rule::lost_frames, std::move(mask));
 }
 
 }  // namespace thermopower::gap::engine

@@ -56,19 +56,15 @@ public:
 
   /// Isolated samples (one, or two of five) far from all around them.
   RowMask spikes() {
-    if (!holds(Rule::outlier_rejection)) return empty();
-    RowMask mask =
-        Spikes(values_, runs_, traits_, scale_, quantum_, traits_.integral != nullptr ? position_step() : 0.0)
-            .find();
-    take(mask);
-    return mask;
+    return taken(Rule::outlier_rejection, Spikes(values_, runs_, traits_, scale_, quantum_,
+                                                 traits_.integral != nullptr ? position_step() : 0.0)
+                                              .find());
   }
 
   /// Stretches that jump away from the level before them and back to it. What climbs a slope and comes down one, as a temperature
   /// that overshoots, does neither.
   RowMask bursts() {
     RowMask mask = empty();
-    if (!holds(Rule::bursts)) return mask;
     const double least =
         std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_, limit_.quanta * quantum_});
     std::vector<double> list = finite_samples(values_);
@@ -98,14 +94,12 @@ public:
         i = end;
       }
     }
-    take(mask);
-    return mask;
+    return taken(Rule::bursts, std::move(mask));
   }
 
   /// Stretches of one value where noise or motion would show: all but their first row.
   RowMask frozen() {
     RowMask mask = empty();
-    if (!holds(Rule::frozen)) return mask;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       std::vector<Eigen::Index> rows = finite_rows(runs_[r]);
       // A temperature does not jump while the logger pauses, either.
@@ -121,15 +115,13 @@ public:
         begin = end;
       }
     }
-    take(mask);
-    return mask;
+    return taken(Rule::frozen, std::move(mask));
   }
 
   /// Samples at the largest or the least value, where far more stand there than next to it, or that is none of the steps the
   /// other samples come in.
   RowMask clipped() {
     RowMask mask = empty();
-    if (!holds(Rule::clipping)) return mask;
     const std::vector<double> list = finite_samples(values_);
     if (list.size() < 50) return mask;
     for (const Extreme& one : {extreme_of(list, true), extreme_of(list, false)}) {
@@ -137,11 +129,16 @@ public:
       for (Eigen::Index i = 0; i < values_.size(); ++i)
         if (values_[i] == one.value) mask[static_cast<std::size_t>(i)] = 1;
     }
+    return taken(Rule::clipping, std::move(mask));
+  }
+
+private:
+  RowMask taken(Rule rule, RowMask mask) {
+    mask = by(rule, std::move(mask));
     take(mask);
     return mask;
   }
 
-private:
   RowMask empty() const { return RowMask(static_cast<std::size_t>(values_.size()), 0); }
 
   /// Whether the step to a row is much like the one before it.

@@ -29,6 +29,11 @@
 
 namespace thermopower::gap::engine {
 
+/// Adds findings to others.
+inline void append(std::vector<Finding>& findings, std::vector<Finding> more) {
+  for (Finding& one : more) findings.push_back(std::move(one));
+}
+
 /// Hands the recordings, in training and held out, that `is_asked` says yes to, to `use`.
 template <class IsAsked, class Use>
 void for_each_recording(CheckedRecordings& checked, IsAsked&& is_asked, Use&& use) {
@@ -40,11 +45,11 @@ void for_each_recording(CheckedRecordings& checked, IsAsked&& is_asked, Use&& us
 /// Reads a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate, earlier by as much
 /// where that is less than half a row, or where the two differ by more than the lag; else leaves it out.
 inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::vector<Finding>& findings) {
-  if (!model.has_axis() || !holds(Rule::lag)) return;
+  if (!model.has_axis()) return;
   RateLag rate_lag;
   for (const PreparedRecording& one : checked.train) rate_lag.add(one.inputs());
   const RateLag::Found found = rate_lag.lag_and_others();
-  if (!found.lag_s) return;
+  if (!found.lag_s || !holds(Rule::lag)) return;
   const double lag_s = std::abs(*found.lag_s);
   const std::string late = *found.lag_s > 0.0 ? "rate_dps" : "angle_deg";
   const std::string words =
@@ -75,29 +80,32 @@ inline void check_units(const Model& model, const CheckedRecordings& checked,
                         const std::vector<std::vector<RunSpan>>& spans, const Catalogue& catalogue,
                         double most_power, std::vector<Finding>& findings) {
   // Nobody but its author knows the units of the columns of a plant of one's own.
-  if (model.own || !holds(Rule::units)) return;
+  if (model.own) return;
   UnitChoice units(model, catalogue, most_power);
   std::size_t at = 0;
   for (const auto* all : {&checked.train, &checked.held_out})
     for (const PreparedRecording& one : *all) units.add(one, spans[at++]);
-  units.find(findings);
-  if (!units.is_as_expected() || !holds(Rule::detached_sensors)) return;
-  check_motion_sensors(model, checked.train, [&](std::vector<Finding> found) {
-    for (Finding& finding : found) findings.push_back(std::move(finding));
-  });
+  std::vector<Finding> found;
+  units.find(found);
+  if (!found.empty() && holds(Rule::units)) append(findings, std::move(found));
+  if (!units.is_as_expected()) return;
+  std::vector<Finding> detached;
+  check_motion_sensors(model, checked.train,
+                       [&](std::vector<Finding> some) { append(detached, std::move(some)); });
   for (const auto* all : {&checked.train, &checked.held_out})
     for (const PreparedRecording& one : *all) {
       FindingList list(one.recording());
       check_thermometer(model, one, catalogue, list);
       check_current_clock(model, one, catalogue, list);
-      for (Finding& finding : list.take()) findings.push_back(std::move(finding));
+      append(detached, list.take());
     }
+  if (!detached.empty() && holds(Rule::detached_sensors)) append(findings, std::move(detached));
 }
 
 /// Lets the target of a servo go on between the rows where the training recordings say that it did.
 inline void read_targets_between_rows(const Model& model, CheckedRecordings& checked,
                                       const Catalogue& catalogue, std::vector<Finding>& findings) {
-  if (!model.has_axis() || !model.has_servo() || !holds(Rule::target_between_rows)) return;
+  if (!model.has_axis() || !model.has_servo()) return;
   TargetBetweenRows between(model, catalogue);
   const auto is_closed = [](const PreparedRecording& one) {
     return one.inputs().axis() && one.inputs().closed_loop && !one.inputs().target_moves;
@@ -105,7 +113,7 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
   for (const PreparedRecording& one : checked.train)
     if (is_closed(one)) between.add(one.inputs());
   const auto share = between.steady();
-  if (!share) return;
+  if (!share || !holds(Rule::target_between_rows)) return;
   for_each_recording(checked, is_closed, [&](PreparedRecording& one) {
     findings.push_back({FindingKind::sampled_command,
                         Severity::note,
@@ -134,14 +142,15 @@ inline const Eigen::VectorXd& command_of(const Model& model, const PreparedRecor
 /// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show which, by
 /// what the motion makes of earlier commands in the training recordings. Comes before what is said of the command between the rows.
 inline void read_what_drove_before(const Model& model, CheckedRecordings& checked) {
-  if (!model.has_axis() || !holds(Rule::driven_before)) return;
+  if (!model.has_axis()) return;
   DrivenBefore before;
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) before.add(one.inputs(), command_of(model, one));
   for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
     const std::vector<RunSpan>& runs = one.inputs().runs;
     for (std::size_t i = 0; i < runs.size(); ++i)
-      if (const auto was = before.was(one.inputs(), command_of(model, one), runs[i]); was && !runs[i].goes_on)
+      if (const auto was = before.was(one.inputs(), command_of(model, one), runs[i]);
+          was && !runs[i].goes_on && holds(Rule::driven_before))
         one.set_driven_before(i, *was);
   });
 }
@@ -149,13 +158,13 @@ inline void read_what_drove_before(const Model& model, CheckedRecordings& checke
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
 inline void read_between_rows(const Model& model, CheckedRecordings& checked, double horizon_s,
                               std::vector<Finding>& findings) {
-  if (!model.has_axis() || !holds(Rule::command_between_rows)) return;
+  if (!model.has_axis()) return;
   CommandBetweenRows between(horizon_s);
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) between.add(one.inputs(), command_of(model, one));
   const double noise = between.noise();
   const auto share = between.steady();
-  if (!share && !(noise > 0.0)) return;
+  if ((!share && !(noise > 0.0)) || !holds(Rule::command_between_rows)) return;
   for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
     const std::string column = command_column(one.inputs());
     const auto note = [&](FindingKind kind, const std::string& message, const char* mend) {
@@ -193,9 +202,7 @@ inline void read_current_noise(const Model& model, CheckedRecordings& checked,
                                std::vector<Finding>& findings) {
   // The other laws' heat goes with the current itself, of which noise is no part on average.
   const bool goes_with_square = std::holds_alternative<OhmicCurrentModel>(model.current);
-  if (model.own || !model.has_thermal() || !goes_with_square || model.has_axis() ||
-      !holds(Rule::current_noise))
-    return;
+  if (model.own || !model.has_thermal() || !goes_with_square || model.has_axis()) return;
   const auto is_heated = [](const PreparedRecording& one) {
     const Inputs& inputs = one.inputs();
     return inputs.judged(Signal::motor_C) && inputs.heat_W.size() == 0 &&
@@ -207,7 +214,7 @@ inline void read_current_noise(const Model& model, CheckedRecordings& checked,
       noise.add(one.inputs().heat == HeatSource::drive ? one.inputs().drive_A : one.inputs().held_current_A,
                 one.inputs().runs);
   const std::optional<double> sd_A = noise.sd_A();
-  if (!sd_A) return;
+  if (!sd_A || !holds(Rule::current_noise)) return;
   for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
     findings.push_back({FindingKind::noisy_command,
                         Severity::note,
@@ -227,7 +234,7 @@ inline void read_current_noise(const Model& model, CheckedRecordings& checked,
 /// all recordings.
 inline void read_when_switched(const Model& model, CheckedRecordings& checked, const Catalogue& catalogue,
                                std::vector<Finding>& findings) {
-  if (model.own || !model.has_thermal() || !holds(Rule::heat_between_rows)) return;
+  if (model.own || !model.has_thermal()) return;
   const auto heat_of = [&](const PreparedRecording& one) {
     return heat_at_rows(model, catalogue, one.inputs());
   };
@@ -243,7 +250,7 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
   };
   const HeatBetweenRows between = seen_in(checked.train);
   const std::optional<double> share = between.share();
-  if (!share || between.differs_from(seen_in(checked.held_out))) return;
+  if (!share || between.differs_from(seen_in(checked.held_out)) || !holds(Rule::heat_between_rows)) return;
   for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
     findings.push_back(switched_between_rows(one.recording().name, one.inputs(), *share));
     one.take_next_before_it(switched_share(one.inputs(), heat_of(one), *share));

@@ -64,7 +64,7 @@ inline bool stands_still(const Eigen::VectorXd& values) {
 /// @param as_recorded  it is said, and nothing is left out
 inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checked, bool as_recorded,
                                    std::vector<Finding>& findings) {
-  if (model.own || !holds(Rule::dead_columns)) return;
+  if (model.own) return;
   constexpr Signal signals[] = {Signal::current_A, Signal::angle_deg, Signal::rate_dps};
   double largest[signal_count] = {};
   bool lives[signal_count] = {};  // in some recording
@@ -100,6 +100,7 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
         if (!one.inputs().judged(signal) || !stands_still(one.inputs().of(signal))) continue;
         const DrivingColumn by = driving(model, one.inputs(), signal);
         if (!is_dead[static_cast<std::size_t>(signal)] && !moves_by_much(one.inputs(), signal)) continue;
+        if (!holds(Rule::dead_columns)) return;
         const bool current = signal == Signal::current_A;
         here.push_back({FindingKind::constant_column,
                         Severity::warning,

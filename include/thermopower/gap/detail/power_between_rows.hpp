@@ -32,7 +32,7 @@ public:
     constexpr double step = 0.25;
     constexpr std::size_t tried = 4;
     const bool is_asked =
-        !posing_.model().own && holds(Rule::heat_between_rows) &&
+        !posing_.model().own &&
         std::all_of(train_.begin(), train_.end(), [](const Inputs& one) { return is_set_anew(one); });
     if (!is_asked) return 0.0;
     std::optional<std::array<double, signal_count>> sigma;
@@ -49,7 +49,7 @@ public:
     }
     let_change(0.0);
     const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
-    if (!(left[0] - left[best] > usual_rarity)) return 0.0;
+    if (!(left[0] - left[best] > usual_rarity) || !holds(Rule::heat_between_rows)) return 0.0;
     // The vertex of the parabola through it and its neighbours.
     const std::size_t middle = std::min(best, tried - 2);
     const double slope = 0.5 * (left[middle + 1] - left[middle - 1]),

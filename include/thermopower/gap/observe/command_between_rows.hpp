@@ -82,7 +82,8 @@ public:
   /// Standard deviation of the noise in the command, in its unit: what it is rough by from row to row and no motion
   /// follows. 0 where there is none, where it moves no simulation over the horizon, or where nobody can tell.
   double noise() const {
-    if (!noise_) noise_ = holds(Rule::command_noise) ? find_noise() : 0.0;
+    if (!noise_) noise_ = find_noise();
+    if (*noise_ > 0.0 && !holds(Rule::command_noise)) noise_ = 0.0;
     return *noise_;
   }
 

@@ -165,20 +165,21 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   // A row that is lost stops no clock: it is read before the runs are cut there.
   read_the_clock(list);
   RowMask starts(unknown_.size(), 0);
-  if (holds(Rule::pauses)) check_stamps(model, list, believed_.runs, starts);
+  check_stamps(model, list, believed_.runs, starts);
+  starts = by(Rule::pauses, std::move(starts));
   believed_.runs = cut_at(believed_.runs, starts, true);
-  if (holds(Rule::resets) && moves_ && believed_.has("angle_deg")) {
+  if (moves_ && believed_.has("angle_deg")) {
     RowMask elsewhere(unknown_.size(), 0);
     check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.find("rate_dps"),
                  believed_.runs, elsewhere);
-    believed_.runs = cut_at(believed_.runs, elsewhere, false);
+    believed_.runs = cut_at(believed_.runs, by(Rule::resets, std::move(elsewhere)), false);
   }
   electrical_ = model.has_current() && recorded.has("power_param");
   drives_by_current_ = !recorded.has("power_param") && !recorded.has(heater_power_column) &&
                        !recorded.has("drive_A") && !recorded.has("heat_W") && model.has_thermal();
   mask_outputs(recorded, list);
   fill_inputs(model, recorded, list);
-  if (moves_ && holds(Rule::under_way)) mark_under_way(believed_);
+  if (moves_) mark_under_way(believed_);
   interval_s_ = plant::median_interval_s(believed_.t_s, believed_.spans(), 0.0);
   if (as_recorded) {
     std::vector<Finding> all = list.take();
@@ -210,13 +211,12 @@ inline bool PreparedRecording::is_output(const std::string& name) const {
 
 /// Takes the stamps of the clock that the recorded ones jitter around, where the outputs were read by it.
 inline void PreparedRecording::read_the_clock(FindingList& list) {
-  if (!holds(Rule::clock)) return;
   std::vector<const Eigen::VectorXd*> outputs;
   for (const Column& column : believed_.columns)
     if (is_output(column.name)) outputs.push_back(&column.values);
   std::optional<ClockStamps> clock =
       clock_behind(believed_.t_s, cut_at_long_pauses(believed_.t_s, believed_.runs), outputs);
-  if (!clock) return;
+  if (!clock || !holds(Rule::clock)) return;
   list.add(FindingKind::jittering_stamps, Severity::note, "t_s",
            "stray by " + short_number(clock->jitter_s) + " s around a clock of " +
                short_number(clock->period_s) + " s, and the outputs were read at its ticks: those are used",
@@ -227,13 +227,11 @@ inline void PreparedRecording::read_the_clock(FindingList& list) {
 inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingList& list) {
   for (Column& column : believed_.columns) {
     // A current holds because the power does; or, as what heats, because it is held.
-    if (!is_output(column.name) || (column.name == "current_A" && own_ == nullptr) ||
-        !holds(Rule::slow_sensors))
-      continue;
+    if (!is_output(column.name) || (column.name == "current_A" && own_ == nullptr)) continue;
     const std::optional<SlowColumn> held = held_between_updates(column.values, believed_.runs);
     const std::optional<SlowColumn> straight =
         held ? std::nullopt : straight_between_updates(believed_.t_s, column.values, believed_.runs);
-    if (!held && !straight) continue;
+    if ((!held && !straight) || !holds(Rule::slow_sensors)) continue;
     const SlowColumn& slow = held ? *held : *straight;
     take_away(column.values, slow.between);
     list.add_rows(held ? FindingKind::held_samples : FindingKind::interpolated_samples, Severity::note,
@@ -307,7 +305,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
              std::to_string(recorded.rows() - present) + " of " + std::to_string(recorded.rows()) +
                  " samples are missing (" + short_number(100.0 * share) + " %)");
   }
-  if (is_temperature(name) && holds(Rule::impossible)) {
+  if (is_temperature(name)) {
     std::vector<double> list_of = finite_samples(values);
     const double typical = median_of(list_of);
     constexpr PossibleTemperature possible;
@@ -316,6 +314,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
       if (typical > possible.low_C && typical < possible.high_C &&
           (values[i] < possible.low_C || values[i] > possible.high_C))
         mask[static_cast<std::size_t>(i)] = 1;
+    mask = by(Rule::impossible, std::move(mask));
     take_away(values, mask);
     list.add_rows(FindingKind::impossible_samples, Severity::warning, name, mask, FindingAction::masked,
                   "are no temperature of a motor", "look at the thermometer's wiring");

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/recording.hpp>
+#include <thermopower/gap/rule.hpp>
 
 #include <Eigen/Core>
 
@@ -87,10 +88,11 @@ inline void mark_under_way(Recording& recording) {
   constexpr UnderWayThresholds limit;
   for (RunSpan& run : recording.runs) {
     if (run.size() < limit.least || run.goes_on) continue;
-    run.goes_on = is_there_at_once(*rate, run, limit.rows);
+    run.goes_on = is_there_at_once(*rate, run, limit.rows) && holds(Rule::under_way);
     for (const char* column : {"drive_A", "voltage_V"})
       if (const Eigen::VectorXd* command = recording.find(column))
-        run.was_driven = was_driven_before(*rate, *command, recording.t_s, run, rate == &slope);
+        run.was_driven =
+            was_driven_before(*rate, *command, recording.t_s, run, rate == &slope) && holds(Rule::under_way);
   }
 }
 
