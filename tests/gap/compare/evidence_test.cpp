@@ -503,7 +503,7 @@ Candidate mean_of_blocks(const Eigen::VectorXd& pulls, double samples_of_block) 
   one.list.resize(1);
   one.fit.point = Eigen::VectorXd::Zero(1);
   one.fit.information = Eigen::MatrixXd::Constant(1, 1, samples_of_block * static_cast<double>(pulls.size()));
-  one.fit.priors = Eigen::VectorXd::Zero(1);
+  one.fit.priors = Eigen::MatrixXd::Zero(1, 1);
   one.fit.pulls = pulls.transpose();
   return one;
 }
@@ -544,9 +544,26 @@ TEST_CASE("what only a prior knows stays as uncertain as that, however many samp
     CAPTURE(samples_as_one);
     Candidate one = mean_of_blocks(Eigen::VectorXd::Zero(40), 1.0);
     one.fit.per_prior = samples_as_one;
-    one.fit.priors[0] = one.fit.information(0, 0) = samples_as_one / (sd * sd);
+    one.fit.priors(0, 0) = one.fit.information(0, 0) = samples_as_one / (sd * sd);
     CHECK(std::sqrt(covariance_of(one, Weight()).of(0, 0)) == Approx(sd));
   }
+}
+
+TEST_CASE(
+    "what priors know of differences between coordinates is taken off whole, and no variance is negative") {
+  // Three knots of a curve: the data tell their sum, a prior that they lie on a line, another how large each is.
+  Candidate one = mean_of_blocks(Eigen::VectorXd::Zero(40), 1.0);
+  one.list.resize(3);
+  one.fit.point = Eigen::VectorXd::Zero(3);
+  one.fit.pulls = Eigen::MatrixXd::Zero(3, 40);
+  const Eigen::Vector3d bend(1.0, -2.0, 1.0), all = Eigen::Vector3d::Ones();
+  one.fit.priors = 50.0 * bend * bend.transpose() + 0.01 * Eigen::Matrix3d::Identity();
+  one.fit.information = one.fit.priors + 400.0 * all * all.transpose();
+  const Covariance covariance = covariance_of(one, Weight());
+  // A slope moves no sum and bends nothing: only the prior of the sizes knows it.
+  const Eigen::Vector3d slope = Eigen::Vector3d(-1.0, 0.0, 1.0).normalized();
+  CHECK(slope.dot(covariance.of * slope) == Approx(100.0).epsilon(0.01));
+  for (Eigen::Index i = 0; i < 3; ++i) CHECK(covariance.of(i, i) > 0.0);
 }
 
 TEST_CASE("of a parameter that the data say nothing of, any value in its range is as good") {

@@ -62,10 +62,10 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   for (Eigen::Index k = 0; k < unit.size(); ++k)
     inverse.col(k) = unit[k] * scaled.solve(Eigen::VectorXd::Unit(unit.size(), k)).cwiseProduct(unit);
   // H^-1 of the whole is that of the data's curvature and of the priors', both between the same inverses.
-  assert(fit.priors.size() <= unit.size() && (fit.pulls.cols() == 0 || fit.pulls.rows() == unit.size()));
+  assert((fit.priors.size() == 0 || fit.priors.rows() == unit.size()) &&
+         (fit.pulls.cols() == 0 || fit.pulls.rows() == unit.size()));
   Eigen::MatrixXd by_priors = Eigen::MatrixXd::Zero(unit.size(), unit.size());
-  for (Eigen::Index k = 0; k < fit.priors.size(); ++k)
-    if (fit.priors[k] > 0.0) by_priors += fit.priors[k] * inverse.col(k) * inverse.col(k).transpose();
+  if (fit.priors.size() > 0) by_priors = inverse * fit.priors * inverse.transpose();
   const Eigen::MatrixXd by_noise = inverse - by_priors;
   by_priors *= fit.per_prior;
   const double inflation = inflation_of(candidate, weight);
@@ -119,22 +119,27 @@ inline bool was_looked_for(const Parameter& parameter, const Coordinate& one) {
   return !parameter.standard && !one.still;
 }
 
-/// Marks explanations of which a cause may be absent. The 95 % intervals of all its sizes hold the value without it, the data tell
-/// nothing of one of its parameters, so that it stands for something simpler, or it is no more than a constant that moved. Two that
-/// do the same from opposite sides (a friction that differs by direction, and a constant torque) are told by their sum alone. Details
-/// of a shape are not asked, and parameters that are known by their order of magnitude have no value without the cause. An interval is
-/// one of a valley that is straight. If the set without the cause was fitted and is far behind in training, the cause is there,
+/// Marks explanations with a cause of which the data leave a size open, so that it stands for something simpler; the order of
+/// magnitude of a length or a time counts where it has no size. And those of which a cause may be absent: the 95 % intervals of all
+/// its sizes hold the value without it, or it is no more than a constant that moved. Two that do the same from opposite sides (a
+/// friction that differs by direction, and a constant torque) are told by their sum alone. Details of a shape are not asked. An
+/// interval is one of a valley that is straight. If the set without the cause was fitted and is far behind, the cause is there,
 /// whatever the length of the valley along which it trades with a constant.
 inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model, const Weight& weight) {
-  // On held-out data a start that nobody measures may do what a cause does not.
-  const auto misfit = [&](const Candidate& one) { return misfit_of(one.train, weight.correlation); };
+  const auto is_far_behind = [&](const Candidate& part, const Candidate& set) {
+    double behind = misfit_of(part.train, weight.correlation) - misfit_of(set.train, weight.correlation);
+    // On held-out data a start that nobody measures may do what a cause does not.
+    if (part.hidden_starts == 0 && set.hidden_starts == 0)
+      behind += misfit_of(part.held_out, weight.held_out) - misfit_of(set.held_out, weight.held_out);
+    return behind > decision.missed_from;
+  };
   const auto is_missed = [&](const Candidate& set, const CatalogueEntry* entry) {
     return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& part) {
       return part.held_out.any() && part.explanation.size() + 1 == set.explanation.size() &&
              set.explanation.includes(part.explanation) &&
              std::find(part.explanation.effects.begin(), part.explanation.effects.end(), entry) ==
                  part.explanation.effects.end() &&
-             misfit(part) - misfit(set) > decision.missed_from;
+             is_far_behind(part, set);
     });
   };
   for (Candidate& one : candidates) {
@@ -145,18 +150,19 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
     std::size_t at = model.calibrated().size();
     for (const CatalogueEntry* entry : one.explanation.effects) {
       const SpecialCase in_fact = special_case(one, entry->info, at);
-      bool has_a_size = false, is_there = false, is_told = true;
+      bool has_a_size = false, is_there = false, are_sizes_told = true, are_orders_told = true;
       for (const Parameter& parameter : entry->info.parameters) {
         const std::size_t place = at++;
         if (!was_looked_for(parameter, one.list[place])) continue;
         const Interval interval = interval_of(one, place, covariance);
-        is_told = is_told && is_narrower(interval, one.list[place]);
+        bool& are_told = parameter.logarithmic ? are_orders_told : are_sizes_told;
+        are_told = are_told && is_narrower(interval, one.list[place]);
         if (parameter.logarithmic) continue;
         has_a_size = true;
         is_there = is_there || parameter.absent_at < interval.low || parameter.absent_at > interval.high;
       }
       const bool is_a_constant = in_fact.the_same && plant::is_calibration(in_fact.cause);
-      one.open = one.open || !is_told;
+      one.open = one.open || !(has_a_size ? are_sizes_told : are_orders_told);
       one.doubtful = one.doubtful || is_a_constant || (has_a_size && !is_there && !is_missed(one, entry));
     }
   }

@@ -31,7 +31,6 @@ inline Candidate candidate_of(const InverseScore& score, const FitProblem& probl
   const Eigen::Index count = static_cast<Eigen::Index>(one.list.size());
   one.fit.point = Eigen::VectorXd::Zero(count);
   one.fit.at_bound.assign(one.list.size(), false);
-  one.fit.priors = Eigen::VectorXd::Zero(count);
   Eigen::VectorXd information = Eigen::VectorXd::Constant(count, 1e-12);
   const auto set = [&](Eigen::Index place, double value, double standard_error) {
     const Coordinate& coordinate = one.list[static_cast<std::size_t>(place)];

@@ -130,7 +130,8 @@ inline double cost_of_parameters(const Candidate& candidate, const Model& model,
   for (const std::size_t place : priced) {
     const Coordinate& one = candidate.list[place];
     const auto row = static_cast<Eigen::Index>(place);
-    const double own = row < candidate.fit.priors.size() ? candidate.fit.priors[row] / counts_as_one : 0.0;
+    const double own =
+        row < candidate.fit.priors.rows() ? candidate.fit.priors(row, row) / counts_as_one : 0.0;
     cost += price_of_parameter({one.upper - one.lower, own}, precision[place], most);
   }
   return cost;

@@ -35,7 +35,7 @@ struct FitResult {
   Eigen::MatrixXd
       information;           ///< half the cost's curvature in the coordinates, starts projected out; or empty
   Eigen::MatrixXd pulls;     ///< gradients of contiguous blocks of the data, one column each, in their order
-  Eigen::VectorXd priors;    ///< what the priors have in the diagonal of `information`
+  Eigen::MatrixXd priors;    ///< what the priors have in `information`; empty: nothing
   double per_prior = 1.0;    ///< samples that a prior counts for
   SignalSums sums;           ///< of the squares of the residuals there; empty where no step was allowed
   Eigen::Index samples = 0;  ///< residuals that counted
@@ -203,7 +203,7 @@ private:
   struct View {
     Eigen::MatrixXd information;
     Eigen::VectorXd gradient;
-    Eigen::VectorXd priors;  ///< their part of the information's diagonal
+    Eigen::MatrixXd priors;  ///< their part of the information
     std::vector<Eliminated> eliminated;
     ResidualsBySignal residuals;
     Eigen::Index samples = 0;
@@ -241,7 +241,7 @@ private:
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     view.information.setZero(n, n);
     view.gradient.setZero(n);
-    view.priors.setZero(n);
+    view.priors.setZero(n, n);
     view.eliminated.resize(problem_.segments.size());
     view.samples = 0;
     view.chi2 = 0.0;
@@ -256,18 +256,17 @@ private:
     view.per_prior = std::max(mean, 1.0) * problem_.correlation;
     for (Eigen::Index i = 0; i < at.size(); ++i) {
       const double weight = view.per_prior * list_[static_cast<std::size_t>(i)].prior.weight(at[i]);
-      view.information(i, i) += weight;
-      view.priors[i] = weight;
+      view.priors(i, i) = weight;
       view.gradient[i] += weight * at[i];
     }
     for (const CombinedPrior& one : combined_) {
       const double value = one.value(at), weight = view.per_prior * one.prior.weight(value);
       for (const auto& [i, by] : one.weights) {
-        for (const auto& [k, with] : one.weights) view.information(i, k) += weight * by * with;
-        view.priors[i] += weight * by * by;
+        for (const auto& [k, with] : one.weights) view.priors(i, k) += weight * by * with;
         view.gradient[i] += weight * by * value;
       }
     }
+    view.information += view.priors;
     view.cost = view.chi2 + view.of_starts + view.per_prior * cost_of_priors(at);
     view.projected += view.cost;
   }
