@@ -20,13 +20,13 @@ namespace {
 
 #if defined(THERMOPOWER_HAS_ZSTD) || defined(THERMOPOWER_HAS_LZ4)
 // Grows with what comes out and not with what a damaged file says will come.
-constexpr std::size_t step = std::size_t{1} << 20;
+constexpr std::size_t least_growth = std::size_t{1} << 20;
 
 // Makes room behind `used` bytes; false where all of `size` are used, and one byte more would be too many.
 bool make_room(std::vector<unsigned char>& out, std::size_t used, std::size_t size) {
   if (used < out.size()) return true;
   if (used >= size) return false;
-  out.resize(std::min(size, std::max(used + step, 2 * used)));
+  out.resize(std::min(size, std::max(used + least_growth, 2 * used)));
   return true;
 }
 #endif

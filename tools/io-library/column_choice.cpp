@@ -26,7 +26,7 @@ namespace {
 
 using Needs = ColumnChoice::Needs;
 
-struct Unit {
+struct SpelledUnit {
   const char* text;
   double factor;
   double offset;
@@ -35,7 +35,7 @@ struct Unit {
 
 struct Quantity {
   const char* ending;  // of the names that have it
-  std::vector<Unit> units;
+  std::vector<SpelledUnit> units;
   const char* one_sided = nullptr;  // why its sign cannot be turned round
 };
 
@@ -166,7 +166,7 @@ bool read_counts(const std::string& name, const std::string& unit, double& facto
 bool take_unit(const std::string& unit, ColumnChoice& choice) {
   const Quantity* const quantity = quantity_of(choice.name);
   if (quantity == nullptr) return false;
-  for (const Unit& one : quantity->units)
+  for (const SpelledUnit& one : quantity->units)
     if (unit == one.text) {
       choice.factor = one.factor;
       choice.offset = one.offset;
@@ -221,7 +221,7 @@ ColumnChoice parse_choice(const std::string& where, const std::string& text) {
     return choice;
   }
   std::string known;
-  for (const auto& one : quantity != nullptr ? quantity->units : std::vector<Unit>())
+  for (const auto& one : quantity != nullptr ? quantity->units : std::vector<SpelledUnit>())
     known += (known.empty() ? "" : ", ") + std::string(one.text);
   const std::string ending = quantity != nullptr ? quantity->ending : "";
   if (ending == "_deg") known += ", or how many counts a turn has, such as 4096";

@@ -15,7 +15,7 @@ constexpr const char* no_circuit =
 constexpr const char* of_a_sensor =
     "It belongs into the simulated sensor, not into the dynamics: change the reading after the step, as sensor noise is added.";
 
-constexpr EffectNotes notes[] = {
+constexpr EffectNotes notes_of_effects[] = {
     {"actuation_delay", "The motion follows every command by the same time, and keeps its shape.",
      "drive_lag, which also rounds corners; target_delay and servo_delay in a closed loop; a clock that stamps commands early.",
      "A queue of commands: Isaac Lab's DelayedPDActuator; in MuJoCo and others hold ctrl back by whole steps.",
@@ -196,7 +196,7 @@ constexpr EffectNotes curve_notes = {
 
 const EffectNotes* notes_of(const std::string& effect) {
   if (plant::is_curve(effect)) return &curve_notes;
-  for (const EffectNotes& one : notes)
+  for (const EffectNotes& one : notes_of_effects)
     if (effect == one.id) return &one;
   return nullptr;
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr unsigned char magic[8] = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 constexpr std::uint64_t largest_chunk = std::uint64_t{1} << 30;  // unpacked; writers take some megabytes
-constexpr std::size_t block = std::size_t{1} << 20;
+constexpr std::size_t read_at_once = std::size_t{1} << 20;
 
 enum Opcode : unsigned char {
   header_op = 0x01,
@@ -124,7 +124,7 @@ private:
     if (head[0] == 0) fail(place, "a record of kind 0; expected a kind from 1 on (is the file damaged?)");
     body_.clear();
     for (std::uint64_t left = size; left > 0;) {
-      const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(left, block));
+      const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(left, read_at_once));
       const std::size_t from = wanted ? body_.size() : 0;
       if (body_.size() < from + part) body_.resize(from + part);
       if (take(body_.data() + from, part) < part) {

@@ -6,6 +6,7 @@
 #include "chart.hpp"
 #include "html_text.hpp"
 #include "report_style.hpp"
+#include "unit_factors.hpp"
 
 #include <thermopower/robot/table.hpp>
 
@@ -17,8 +18,6 @@ namespace {
 
 using io::escaped;
 using io::readable;
-
-constexpr double degrees = 57.29577951308232;
 
 const char* const own_style = R"css(
 .joints td,.joints th{text-align:left;white-space:nowrap}.joints .num{text-align:right}.joints .cause{white-space:normal}

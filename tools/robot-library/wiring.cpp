@@ -5,6 +5,7 @@
 
 #include "assignment.hpp"
 #include "wiring_evidence.hpp"
+#include "unit_factors.hpp"
 #include "wiring_words.hpp"
 
 #include <algorithm>
@@ -21,7 +22,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double degrees = 57.29577951308232, turns_per_rad = 0.15915494309189535, rpm = 9.549296585513721;
 constexpr double close_factor = 1.25;      // two factors that differ by less are the same
 constexpr double clear_factor = 1.2;       // gains that differ by more are not the same
 constexpr double closer_share = 0.45;      // of a gain's logarithmic error that its exchange may leave

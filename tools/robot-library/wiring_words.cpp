@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
+#include "unit_factors.hpp"
 #include "wiring_words.hpp"
 
 #include <algorithm>
@@ -13,8 +14,6 @@
 
 namespace thermopower::robot {
 namespace {
-
-constexpr double degrees = 57.29577951308232, turns_per_rad = 0.15915494309189535, rpm = 9.549296585513721;
 
 const char* plural(Role role) {
   switch (role) {
