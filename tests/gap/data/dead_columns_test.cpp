@@ -78,6 +78,16 @@ TEST_CASE("an axis that never moves says nothing") {
   CHECK_THAT(diagnosis.next_experiment, ContainsSubstring("hard enough to move"));
 }
 
+TEST_CASE("an axis that stands still under less than what moves it elsewhere is held, and that is data") {
+  Recording held = still(axis(2), {"angle_deg", "rate_dps"}, 0.0);
+  held.set("drive_A", 0.6 * held.column("drive_A"));
+  CHECK(said(test::axis_model(), axis(1), held).empty());
+  // Not where one of its outputs moves: then the other is dead.
+  Recording half = axis(2);
+  half.set("drive_A", 0.6 * half.column("drive_A"));
+  CHECK(said(test::axis_model(), axis(1), still(half, {"angle_deg"}, 0.0)) == "warning(angle_deg,masked) ");
+}
+
 TEST_CASE("an output may stand still where its input does") {
   CHECK(said(test::axis_model(), still(axis(1), {"drive_A", "angle_deg", "rate_dps"}, 0.0), axis(2)).empty());
   CHECK(said(test::bench_model(), still(bench(1), {"power_param", "current_A"}, 0.0), bench(2)).empty());

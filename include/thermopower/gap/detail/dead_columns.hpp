@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,7 @@ namespace thermopower::gap::engine {
 struct DeadColumnThresholds {
   Eigen::Index least_samples = 12;  ///< fewer may be the same by chance
   double much = 0.2;                ///< of the largest command of all recordings: less need not move anything
+  double as_hard = 0.9;             ///< of the weakest drive that moves it elsewhere: less may not move it
   double tail = 0.02;               ///< of a command's samples at either end are not counted: spikes
 };
 
@@ -67,25 +70,37 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
   if (model.own) return;
   constexpr Signal signals[] = {Signal::current_A, Signal::angle_deg, Signal::rate_dps};
   double largest[signal_count] = {};
-  bool lives[signal_count] = {};  // in some recording
+  constexpr double never = std::numeric_limits<double>::infinity();
+  double least_that_moves[signal_count];  // the weakest drive of a recording in which the output lives
+  std::fill(std::begin(least_that_moves), std::end(least_that_moves), never);
   for (const auto* all : {&checked.train, &checked.held_out})
     for (const PreparedRecording& one : *all)
       for (const Signal signal : signals)
         if (one.inputs().judged(signal)) {
           const auto at = static_cast<std::size_t>(signal);
-          largest[at] = std::max(largest[at], driving(model, one.inputs(), signal).largest);
-          lives[at] = lives[at] || !stands_still(one.inputs().of(signal));
+          const double by = driving(model, one.inputs(), signal).largest;
+          largest[at] = std::max(largest[at], by);
+          if (!stands_still(one.inputs().of(signal)))
+            least_that_moves[at] = std::min(least_that_moves[at], by);
         }
-  const auto moves_by_much = [&](const Inputs& inputs, Signal signal) {
-    return driving(model, inputs, signal).range >
-           DeadColumnThresholds().much * largest[static_cast<std::size_t>(signal)];
+  // What moves it elsewhere moves it here. An axis that is driven less may be held by friction, and its standstill tells how large
+  // that is.
+  const auto must_move = [&](const Inputs& inputs, Signal signal) {
+    constexpr DeadColumnThresholds limit;
+    const auto at = static_cast<std::size_t>(signal);
+    const DrivingColumn by = driving(model, inputs, signal);
+    const auto rests = [&](Signal one) { return !inputs.judged(one) || stands_still(inputs.of(one)); };
+    const bool may_be_held = signal != Signal::current_A && rests(Signal::angle_deg) &&
+                             rests(Signal::rate_dps) && least_that_moves[at] < never &&
+                             by.largest < limit.as_hard * least_that_moves[at];
+    return by.range > limit.much * largest[at] && !may_be_held;
   };
   bool is_dead[signal_count] = {};  // in every recording, and in some of them it cannot be
   for (const auto* all : {&checked.train, &checked.held_out})
     for (const PreparedRecording& one : *all)
       for (const Signal signal : signals)
-        if (one.inputs().judged(signal) && !lives[static_cast<std::size_t>(signal)] &&
-            moves_by_much(one.inputs(), signal))
+        if (one.inputs().judged(signal) && least_that_moves[static_cast<std::size_t>(signal)] == never &&
+            must_move(one.inputs(), signal))
           is_dead[static_cast<std::size_t>(signal)] = true;
   std::vector<Finding> dead;
   for (auto* all : {&checked.train, &checked.held_out}) {
@@ -99,7 +114,7 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
       for (const Signal signal : signals) {
         if (!one.inputs().judged(signal) || !stands_still(one.inputs().of(signal))) continue;
         const DrivingColumn by = driving(model, one.inputs(), signal);
-        if (!is_dead[static_cast<std::size_t>(signal)] && !moves_by_much(one.inputs(), signal)) continue;
+        if (!is_dead[static_cast<std::size_t>(signal)] && !must_move(one.inputs(), signal)) continue;
         if (!holds(Rule::dead_columns)) return;
         const bool current = signal == Signal::current_A;
         here.push_back({FindingKind::constant_column,
