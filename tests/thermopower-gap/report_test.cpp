@@ -54,9 +54,7 @@ Diagnosis example() {
                        1.0,
                        0.0,
                        0.1,
-                       false,
-                       false,
-                       false,
+                       Lacks::nothing,
                        d.cause[0].parameters,
                        {{{"natural_convection"}, 0.97}},
                        0.0,
@@ -105,7 +103,7 @@ std::pair<Diagnosis, std::vector<Recording>> four_runs() {
                       measured + 0.5 * error, measured});
   d.series[0].rivals.push_back({{"natural_convection"}, measured + 0.25 * error});
   d.ranking.push_back(
-      {{"natural_convection"}, 0.3, 1.0, 2.0, 0.2, false, false, false, {}, {}, 0.0, 0.0, 0, {}, {}});
+      {{"natural_convection"}, 0.3, 1.0, 2.0, 0.2, Lacks::nothing, {}, {}, 0.0, 0.0, 0, {}, {}});
   d.gap.resize(1);
   d.correlation.names = {"conductance.scale", "radiation.emissive_area_m2", "heat_capacity.scale"};
   d.correlation.of.resize(3, 3);
