@@ -60,7 +60,8 @@ std::vector<std::string> left_over(const JointDiagnosis& joint) {
     const bool has_place = change.name == "armature" || change.name == "damping" ||
                            change.name == "friction" || change.name == "effort_scale";
     if (!has_place)
-      out.push_back(change.name + " " + four_digits(change.to) + (change.unit == "1" ? "" : " " + change.unit));
+      out.push_back(change.name + " " + four_digits(change.to) +
+                    (change.unit == "1" ? "" : " " + change.unit));
   }
   return out;
 }
@@ -143,8 +144,8 @@ AmendedFile training_file(const RobotDiagnosis& robot, TrainingFormat format) {
       text += "    BuiltinPositionActuatorCfg(" + call(numbers) + "),\n";
     } else {
       text += "    " + quoted(joint.name) + ": dict(ke=" + four_digits(found_kp(model, d)) +
-              ", kd=" + four_digits(found_kd(model, d) + d.damping) + ", armature=" + four_digits(d.armature) +
-              ", friction=" + four_digits(d.friction) +
+              ", kd=" + four_digits(found_kd(model, d) + d.damping) +
+              ", armature=" + four_digits(d.armature) + ", friction=" + four_digits(d.friction) +
               (limited ? ", effort_limit=" + four_digits(model.effort_limit) : "") + "),\n";
     }
     if (!rest.empty()) {
