@@ -180,7 +180,8 @@ RankedExplanation explanation(const JsonText& file, const Json& entry) {
   one.train_gain = number_or_nan(entry.at("train_gain"));
   const std::optional<Lacks> lacks = lacks_of(entry.at("lacks").get<std::string>());
   if (!lacks)
-    file.fail("/ranking", "lacks " + JsonText::shown(entry["lacks"]) + "; expected such as nothing or room");
+    file.fail("/ranking", "has \"lacks\": " + JsonText::shown(entry["lacks"]) +
+                              "; expected a word such as nothing or room");
   one.lacks = *lacks;
   one.fitted = coordinates(entry.at("fitted"));
   one.fixed = coordinates(entry.at("fixed"));

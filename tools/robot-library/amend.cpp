@@ -14,12 +14,6 @@ struct Tag {
   std::size_t begin = 0, end = 0;  // end: behind '>'
 };
 
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", value == 0.0 ? 0.0 : value);
-  return text;
-}
-
 // An attribute's value in a tag; nothing where it has none.
 bool find_attribute(const std::string& tag, const std::string& name, std::size_t& begin, std::size_t& end) {
   const std::regex pattern("[\\s]" + name + "\\s*=\\s*(\"([^\"]*)\"|'([^']*)')");
@@ -81,9 +75,9 @@ std::string indent_of(const std::string& text, std::size_t at) {
 
 // "damping 0.6 -> 0.21 N m s/rad": a comment may hold no two hyphens in a row, so the arrow is a word.
 std::string change_text(const Change& change) {
-  std::string out = change.name + " " + number(change.from) + " to " + number(change.to);
+  std::string out = change.name + " " + four_digits(change.from) + " to " + four_digits(change.to);
   if (std::isfinite(change.error) && change.error > 0.0)
-    out += " (standard error " + number(change.error) + ")";
+    out += " (standard error " + four_digits(change.error) + ")";
   return out + (change.unit == "1" ? "" : " " + change.unit);
 }
 
@@ -127,14 +121,14 @@ AmendedFile amended_mjcf(const std::string& text, const RobotDiagnosis& robot) {
     const bool has_spring = d.stiffness > 0.0 && d.stiffness != joint.configured.stiffness;
     for (const Change& change : joint.changes) {
       if (change.name == "armature" || change.name == "damping") {
-        set_attribute(with, change.name, number(change.to));
+        set_attribute(with, change.name, four_digits(change.to));
         said.push_back(change_text(change));
       } else if (change.name == "friction") {
-        set_attribute(with, "frictionloss", number(change.to));
+        set_attribute(with, "frictionloss", four_digits(change.to));
         said.push_back(change_text(change));
       } else if (has_spring && change.name == "stiffness") {
-        set_attribute(with, "stiffness", number(change.to));
-        set_attribute(with, "springref", number(-d.bias / d.stiffness));
+        set_attribute(with, "stiffness", four_digits(change.to));
+        set_attribute(with, "springref", four_digits(-d.bias / d.stiffness));
         said.push_back(change_text(change) + ", with what is constant in springref");
       } else if (!(has_spring && change.name == "constant")) {
         cannot.push_back(change_text(change));
@@ -175,8 +169,8 @@ AmendedFile amended_urdf(const std::string& text, const RobotDiagnosis& robot) {
       if (one.begin > tag.begin && one.begin < close) dynamics = one, has_dynamics = true;
     std::string with =
         has_dynamics ? out.text.substr(dynamics.begin, dynamics.end - dynamics.begin) : "<dynamics/>";
-    set_attribute(with, "damping", number(joint.found.damping));
-    set_attribute(with, "friction", number(joint.found.friction));
+    set_attribute(with, "damping", four_digits(joint.found.damping));
+    set_attribute(with, "friction", four_digits(joint.found.friction));
     if (has_dynamics) {
       replace(out.text, dynamics, with, comment);
     } else {

@@ -3,6 +3,7 @@
 
 #include <thermopower/robot/impact.hpp>
 
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/robot/table.hpp>
 
 #include "replay.hpp"
@@ -206,7 +207,7 @@ Impact impact(const Body& body, const RobotDiagnosis& diagnosis, const std::stri
 std::string impact_text(const RobotDiagnosis& diagnosis, const Impact& impact) {
   constexpr std::size_t most_rows = 20;
   const bool is_angle = impact.unit == "rad";
-  const double factor = is_angle ? 57.29577951308232 : 1000.0;
+  const double factor = is_angle ? plant::deg_per_rad : 1000.0;
   const std::string unit = is_angle ? "deg" : "mm";
   const auto text = [&](double value) { return detail::number_text(factor * value); };
   std::string out = "What matters for " + (impact.of.empty() ? std::string("all joints") : impact.of) + ": " +

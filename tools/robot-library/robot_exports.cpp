@@ -16,12 +16,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double two_sided_95 = 1.96;  // standard errors
 
-std::string four_digits(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", value == 0.0 ? 0.0 : value);
-  return text;
-}
-
 // A string of Python; names of joints come from a file.
 std::string quoted(const std::string& text) {
   std::string out = "\"";

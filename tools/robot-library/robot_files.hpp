@@ -5,10 +5,18 @@
 #include <thermopower/robot/diagnosis.hpp>
 #include <thermopower/robot/impact.hpp>
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
 namespace thermopower::robot {
+
+/// A number as files for other programs have it; 0 has no sign.
+inline std::string four_digits(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g", value == 0.0 ? 0.0 : value);
+  return text;
+}
 
 /// A file for another program, and what its format cannot express.
 struct AmendedFile {

@@ -6,8 +6,8 @@
 #include "chart.hpp"
 #include "html_text.hpp"
 #include "report_style.hpp"
-#include "unit_factors.hpp"
 
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/robot/table.hpp>
 
 #include <cctype>
@@ -83,9 +83,9 @@ private:
     words.replace(words.size() - 2, 2, ".");
     if (std::isfinite(robot_.tracking.before))
       words += " The causes lower the tracking error of all joints together from " +
-               readable(degrees * robot_.tracking.before) + "° to " +
-               readable(degrees * robot_.tracking.after) + "°; refitted constants alone reach " +
-               readable(degrees * robot_.tracking.recalibrated) + "°.";
+               readable(plant::deg_per_rad * robot_.tracking.before) + "° to " +
+               readable(plant::deg_per_rad * robot_.tracking.after) + "°; refitted constants alone reach " +
+               readable(plant::deg_per_rad * robot_.tracking.recalibrated) + "°.";
     out_ += "<p class=\"words\">" + words + "</p>\n<p class=\"from\">" + std::to_string(robot_.rows) +
             " rows fitted, " + std::to_string(robot_.held_out_rows) + " rows judged, effort " +
             (robot_.effort_is_measured ? "as measured" : "from targets and gains") + ".</p>\n";
@@ -127,9 +127,10 @@ private:
       out_ += "<td class=\"cause\">" + causes_text(joint) + "</td><td class=\"num wide\">" +
               share_text(joint.effort.before / joint.effort_rms) + " → " +
               share_text(joint.effort.after / joint.effort_rms) + "</td><td class=\"num\">" +
-              (std::isfinite(joint.tracking.before) ? readable(degrees * joint.tracking.before, 2) + " → " +
-                                                          readable(degrees * joint.tracking.after, 2)
-                                                    : std::string("–")) +
+              (std::isfinite(joint.tracking.before)
+                   ? readable(plant::deg_per_rad * joint.tracking.before, 2) + " → " +
+                         readable(plant::deg_per_rad * joint.tracking.after, 2)
+                   : std::string("–")) +
               "</td><td class=\"num\">" + (joint.causes.empty() ? "–" : share_text(share_taken(joint))) +
               "</td></tr>\n";
     }
@@ -175,9 +176,9 @@ private:
              " of the joint's effort; this answer leaves " +
              share_text(joint.effort.after / joint.effort_rms) + ".";
     if (std::isfinite(joint.tracking.before))
-      words += " Its tracking error falls from " + readable(degrees * joint.tracking.before) + "° to " +
-               readable(degrees * joint.tracking.after) + "° (" +
-               readable(degrees * joint.tracking.recalibrated) + "° with refitted constants).";
+      words += " Its tracking error falls from " + readable(plant::deg_per_rad * joint.tracking.before) +
+               "° to " + readable(plant::deg_per_rad * joint.tracking.after) + "° (" +
+               readable(plant::deg_per_rad * joint.tracking.recalibrated) + "° with refitted constants).";
     if (joint.differs)
       words += " It differs from joints that are built alike: " + escaped(joint.difference) + ".";
     out_ += "<p>" + words + "</p>\n";
@@ -224,9 +225,11 @@ private:
     after.role = "augmented";
     for (Eigen::Index row = 0; row < series.rows(); ++row) {
       before.x.push_back(series.t_s[row]);
-      before.y.push_back(degrees * (robot_.position_configured(row, column) - series.measured(row, column)));
+      before.y.push_back(plant::deg_per_rad *
+                         (robot_.position_configured(row, column) - series.measured(row, column)));
       after.x.push_back(series.t_s[row]);
-      after.y.push_back(degrees * (robot_.position_found(row, column) - series.measured(row, column)));
+      after.y.push_back(plant::deg_per_rad *
+                        (robot_.position_found(row, column) - series.measured(row, column)));
     }
     chart.series = {before, after};
     out_ += io::to_html(chart);

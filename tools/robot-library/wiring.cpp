@@ -4,8 +4,8 @@
 #include <thermopower/robot/wiring.hpp>
 
 #include "assignment.hpp"
-#include "wiring_evidence.hpp"
 #include "unit_factors.hpp"
+#include "wiring_evidence.hpp"
 #include "wiring_words.hpp"
 
 #include <algorithm>
@@ -34,8 +34,8 @@ constexpr double common_share = 0.6;  // of the joints that must have a unit, so
 constexpr Index few_rows = 500;       // for hypotheses that ask the rigid body once more
 
 // Units of an angle and of a rate: logged number per rad or rad/s.
-constexpr std::array<double, 3> angle_units{1.0, degrees, turns_per_rad};
-constexpr std::array<double, 4> rate_units{1.0, degrees, rpm, turns_per_rad};
+constexpr std::array<double, 3> angle_units{1.0, plant::deg_per_rad, turns_per_rad};
+constexpr std::array<double, 4> rate_units{1.0, plant::deg_per_rad, rpm, turns_per_rad};
 
 Wires identity(std::size_t joints) {
   Wires out;
@@ -269,9 +269,9 @@ private:
       const double rv = by_velocity[j], rt = by_target[j];
       const auto unit_of_position = [](double ratio) {  // the unit that only the position can have
         const double size = std::fabs(ratio);
-        return std::fabs(size * degrees - 1.0) < 0.01         ? degrees
-               : std::fabs(size * turns_per_rad - 1.0) < 0.01 ? turns_per_rad
-                                                              : 1.0;
+        return std::fabs(size * plant::deg_per_rad - 1.0) < 0.01 ? plant::deg_per_rad
+               : std::fabs(size * turns_per_rad - 1.0) < 0.01    ? turns_per_rad
+                                                                 : 1.0;
       };
       if (has_target && rt != 1.0) position = unit_of_position(rt);
       if (position == 1.0 && has_velocity && rv != 1.0) position = unit_of_position(rv);
@@ -312,11 +312,11 @@ private:
       ++limited;
       if (outside(j, rows_.position.col(index(j))) < 0.2) continue;
       ++out_of_range;
-      back += outside(j, rows_.position.col(index(j)) / degrees) < 0.02 ? 1 : 0;
+      back += outside(j, rows_.position.col(index(j)) / plant::deg_per_rad) < 0.02 ? 1 : 0;
     }
     const bool has_target = rows_.target.rows() > 0, has_velocity = rows_.velocity.rows() > 0;
     if (limited > 0 && 2 * out_of_range > limited && 10 * back > 9 * out_of_range) {
-      for (std::size_t j = 0; j < count(); ++j) scale_joint(j, degrees, has_velocity, has_target);
+      for (std::size_t j = 0; j < count(); ++j) scale_joint(j, plant::deg_per_rad, has_velocity, has_target);
       rows_ = put_right(raw_, out_);
       return;
     }
@@ -551,9 +551,9 @@ private:
                      ratios.end());
     const double common = ratios[ratios.size() / 2];
     double unit = 1.0;
-    for (const double one : {degrees, 1.0 / degrees, 1000.0, 100.0})
+    for (const double one : {plant::deg_per_rad, 1.0 / plant::deg_per_rad, 1000.0, 100.0})
       if (measured && std::fabs(std::log(common / one)) < std::log(close_factor)) unit = one;
-    if (unit == degrees || unit == 1.0 / degrees) out_.gain_factor = 1.0 / unit;
+    if (unit == plant::deg_per_rad || unit == 1.0 / plant::deg_per_rad) out_.gain_factor = 1.0 / unit;
     if (unit == 1000.0 || unit == 100.0)
       for (double& one : out_.effort.factor) one *= unit;
     const double whole = measured ? unit : 1.0;

@@ -4,6 +4,8 @@
 #include "unit_factors.hpp"
 #include "wiring_words.hpp"
 
+#include <thermopower/robot/table.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,18 +35,12 @@ const char* plural(Role role) {
 const char* unit_word(Role role, double factor) {
   const double size = std::fabs(factor);
   const auto is = [&](double one) { return std::fabs(size / one - 1.0) < 0.01; };
-  if (is(degrees)) return role == Role::velocity ? "degrees per second" : "degrees";
+  if (is(plant::deg_per_rad)) return role == Role::velocity ? "degrees per second" : "degrees";
   if (is(turns_per_rad)) return role == Role::velocity ? "turns per second" : "turns";
   if (is(rpm)) return "revolutions per minute";
   if (is(1000.0)) return "mN m";
   if (is(100.0)) return "N cm";
   return "another unit";
-}
-
-std::string three_digits(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
 }
 
 class Words {
@@ -201,12 +197,13 @@ private:
     for (std::size_t j = 0; j < wires.offset.size(); ++j) {
       if (wires.offset[j] == 0.0) continue;
       if (role == Role::target && std::fabs(wires.offset[j] - wiring_.position.offset[j]) < 1e-9) continue;
-      const std::string text =
-          role == Role::target
-              ? "the targets of " + robot_.joints[j].name + " lie " + three_digits(wires.offset[j]) +
-                    " rad above its positions for good: one of the two has another zero"
-              : "the positions of " + robot_.joints[j].name +
-                    " count from another zero: " + three_digits(wires.offset[j]) + " rad are taken off";
+      const std::string text = role == Role::target
+                                   ? "the targets of " + robot_.joints[j].name + " lie " +
+                                         detail::number_text(wires.offset[j]) +
+                                         " rad above its positions for good: one of the two has another zero"
+                                   : "the positions of " + robot_.joints[j].name +
+                                         " count from another zero: " + detail::number_text(wires.offset[j]) +
+                                         " rad are taken off";
       add(WiringFault::offset, role, {static_cast<int>(j)}, wires.offset[j], text);
     }
   }

@@ -270,6 +270,27 @@ TEST_CASE("an experiment that can tell nothing decides") {
   CHECK(kinds(test::axis_model(), {still}, {held}) == "never_driven ");
 }
 
+TEST_CASE("a body that nothing drives is data where it cools or a neighbour warms it, and else is not") {
+  const auto is_said = [](const Recording& train) {
+    for (const Finding& one :
+         engine::check(test::bench_model(), {train}, {bench()}, {0.5, false}, standard_catalogue()).findings)
+      if (one.kind == FindingKind::never_driven) return true;
+    return false;
+  };
+  Recording off = bench();
+  off.set("power_param", Eigen::VectorXd::Zero(off.rows()));
+  off.remove("current_A");
+  const Eigen::ArrayXd away = Eigen::ArrayXd::LinSpaced(off.rows(), 0.0, 5.0);
+  Recording cooling = off, warmed = off, alone = off;
+  cooling.set("motor_C", 25.0 + 30.0 * (-away).exp());
+  warmed.set("motor_C", 25.0 + 12.0 * (1.0 - (-away).exp()));
+  alone = warmed;
+  warmed.set("neighbour_C", 25.0 + 25.0 * (1.0 - (-2.0 * away).exp()));
+  CHECK_FALSE(is_said(cooling));
+  CHECK_FALSE(is_said(warmed));
+  CHECK(is_said(alone));
+}
+
 TEST_CASE("an empty column is said to be empty") {
   Recording r = bench();
   r.set("airspeed_mps", Eigen::VectorXd::Constant(r.rows(), missing));

@@ -91,8 +91,9 @@ public:
       for (Candidate& one : candidates_) one.probability /= sum;
   }
 
-  /// The answer: the likeliest of what is no larger than the set that forward selection stops at, or of all where that set is out of the
-  /// running, with the class of what predicts alike and acts in the same place. Where that class is not likely, and a part of the set has one that is, that part.
+  /// The answer: the likeliest of what is no larger than the set that forward selection stops at, or of all where that set is
+  /// out of the running, with the class of what predicts alike and acts in the same place. Where that class is not likely, and a
+  /// part of the set has one that is, that part.
   /// @param set  of the effort
   Answer answer(const InverseScore& set) const {
     const std::vector<const CatalogueEntry*> told = sorted(set.effects);

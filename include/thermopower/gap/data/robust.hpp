@@ -30,6 +30,11 @@ inline double quantile_of(std::vector<double>& values, double share) {
 /// The median of finite values, 0 of none; reorders them.
 inline double median_of(std::vector<double>& values) { return quantile_of(values, 0.5); }
 
+/// 5th to 95th percentile of finite values, 0 of none; reorders them.
+inline double middle_range_of(std::vector<double>& values) {
+  return quantile_of(values, 0.95) - quantile_of(values, 0.05);
+}
+
 /// Root mean square; 0 of none.
 inline double rms_of(const std::vector<double>& values) {
   double squares = 0.0;

@@ -68,7 +68,7 @@ public:
     const double least =
         std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_, limit_.quanta * quantum_});
     std::vector<double> list = finite_samples(values_);
-    const double range = quantile_of(list, 0.95) - quantile_of(list, 0.05);
+    const double range = middle_range_of(list);
     for (const RunSpan& run : runs_) {
       const std::vector<Eigen::Index> rows = finite_rows(run);
       for (std::size_t i = 1; i < rows.size(); ++i) {

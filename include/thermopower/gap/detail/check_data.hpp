@@ -111,7 +111,7 @@ public:
                               quantum_of(measured) / std::sqrt(12.0));
       report.misfit = report.samples == 0 ? 0.0 : std::sqrt(squares / used.sum());
       std::vector<double> values = finite_samples(measured);
-      report.range = quantile_of(values, 0.95) - quantile_of(values, 0.05);
+      report.range = middle_range_of(values);
       signals_.push_back(std::move(report));
       used_.push_back(std::move(used));
     }

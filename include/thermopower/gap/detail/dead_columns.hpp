@@ -85,10 +85,9 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
         }
   // What moves it elsewhere moves it here. An axis that is driven less may be held by friction, and its standstill tells how large
   // that is.
-  const auto must_move = [&](const Inputs& inputs, Signal signal) {
+  const auto must_move = [&](const Inputs& inputs, Signal signal, const DrivingColumn& by) {
     constexpr DeadColumnThresholds limit;
     const auto at = static_cast<std::size_t>(signal);
-    const DrivingColumn by = driving(model, inputs, signal);
     const auto rests = [&](Signal one) { return !inputs.judged(one) || stands_still(inputs.of(one)); };
     const bool may_be_held = signal != Signal::current_A && rests(Signal::angle_deg) &&
                              rests(Signal::rate_dps) && least_that_moves[at] < never &&
@@ -100,7 +99,7 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
     for (const PreparedRecording& one : *all)
       for (const Signal signal : signals)
         if (one.inputs().judged(signal) && least_that_moves[static_cast<std::size_t>(signal)] == never &&
-            must_move(one.inputs(), signal))
+            must_move(one.inputs(), signal, driving(model, one.inputs(), signal)))
           is_dead[static_cast<std::size_t>(signal)] = true;
   std::vector<Finding> dead;
   for (auto* all : {&checked.train, &checked.held_out}) {
@@ -114,7 +113,7 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
       for (const Signal signal : signals) {
         if (!one.inputs().judged(signal) || !stands_still(one.inputs().of(signal))) continue;
         const DrivingColumn by = driving(model, one.inputs(), signal);
-        if (!is_dead[static_cast<std::size_t>(signal)] && !must_move(one.inputs(), signal)) continue;
+        if (!is_dead[static_cast<std::size_t>(signal)] && !must_move(one.inputs(), signal, by)) continue;
         if (!holds(Rule::dead_columns)) return;
         const bool current = signal == Signal::current_A;
         here.push_back({FindingKind::constant_column,

@@ -23,9 +23,8 @@ struct ExperimentThresholds {
       1.0;  ///< interval between rows of an axis that is odd: another unit is asked for first
   double not_driven = 0.02;  ///< of the training data's largest command
   double not_moving = 0.2;   ///< of the training data's range of a judged signal
-  double mostly =
-      0.5;  ///< of the range of a temperature: what cools by it, or stands next to what moves by it, tells something
-  double same_rows = 0.9;          ///< share of equal rows of two recordings that are one
+  double mostly = 0.5;       ///< of a temperature's range, by which it cools or what stands next to it moves
+  double same_rows = 0.9;    ///< share of equal rows of two recordings that are one
   Eigen::Index pattern_rows = 24;  ///< rows by which a recording is sought in another
 };
 
@@ -53,19 +52,18 @@ inline std::string command_column(const Inputs& inputs) {
 /// 5th to 95th percentile of a judged signal.
 inline double range_of(const Inputs& inputs, Signal signal) {
   std::vector<double> values = finite_samples(inputs.of(signal));
-  return quantile_of(values, 0.95) - quantile_of(values, 0.05);
+  return middle_range_of(values);
 }
 
 /// Whether a body tells something though nothing drives it: it cools, or what is mounted next to it warms or cools as much.
 inline bool is_driven_by_others(const Inputs& inputs) {
   constexpr ExperimentThresholds limit;
   if (inputs.axis() || !inputs.bench() || !inputs.judged(Signal::motor_C)) return false;
+  const double range = range_of(inputs, Signal::motor_C);
+  if (!(range > 0.0)) return false;
   const std::vector<double> own = finite_samples(inputs.of(Signal::motor_C));
   std::vector<double> next = finite_samples(inputs.neighbour_C);
-  const double range = range_of(inputs, Signal::motor_C);
-  const bool cools = own.front() - own.back() > limit.mostly * range;
-  return range > 0.0 && (cools || (!next.empty() &&
-                                   quantile_of(next, 0.95) - quantile_of(next, 0.05) > limit.mostly * range));
+  return std::max(own.front() - own.back(), middle_range_of(next)) > limit.mostly * range;
 }
 
 /// Whether the outputs of `part` are those of some rows of `whole`.
