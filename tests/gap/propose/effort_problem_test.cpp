@@ -119,13 +119,20 @@ double value(const InverseScore& score, const std::string& parameter) {
   return std::nan("");
 }
 
+/// Mean log density of a block of held-out effort over "nothing missing", nats.
+double gain(const InverseScore& score) {
+  double sum = 0.0;
+  for (const double one : score.block_gain) sum += one;
+  return sum / static_cast<double>(score.block_gain.size());
+}
+
 }  // namespace
 
 TEST_CASE("a sound axis needs the effort that was recorded, and nothing is told") {
   const Motion motion;
   Posed posed(model_of(motion), motion);
   REQUIRE(posed.problem.is_judged());
-  CHECK(posed.problem.nothing().share < 0.02);
+  CHECK(posed.problem.score({}).share < 0.02);
   CHECK(posed.told().empty());
 }
 
@@ -163,7 +170,7 @@ TEST_CASE("a friction that would drive the motion is refused") {
   Motion motion;
   motion.extra_Nm = [](double, double rate) { return rate > 0.0 ? -0.03 : 0.03; };
   Posed posed(model_of(motion), motion);
-  CHECK(posed.score({"coulomb_friction"}).refusal == InverseRefusal::drives_the_motion);
+  CHECK(posed.score({"coulomb_friction"}).refusal == InverseRefusal::not_itself);
 }
 
 TEST_CASE("cogging is told with its cycles, and a delay in seconds") {
@@ -178,18 +185,17 @@ TEST_CASE("cogging is told with its cycles, and a delay in seconds") {
     motion.late_s = 0.0175;
     Posed posed(model_of(motion), motion);
     CHECK(posed.told() == "actuation_delay");
-    CHECK(posed.score({"actuation_delay"}).delay_s == Approx(0.0175).epsilon(0.05));
+    CHECK(value(posed.score({"actuation_delay"}), "s") == Approx(0.0175).epsilon(0.05));
   }
 }
 
-TEST_CASE("what a motion does not tell is not scored, and says why") {
+TEST_CASE("what a motion does not tell is not scored") {
   const Motion motion;
   Posed posed(model_of(motion), motion);
-  CHECK(posed.score({"backlash"}).refusal == InverseRefusal::hidden_state);
-  CHECK(posed.score({"compliance"}).refusal == InverseRefusal::hidden_state);
-  CHECK(posed.score({"torque_fade"}).refusal == InverseRefusal::not_recorded);
-  CHECK(posed.score({"rate_bias"}).refusal == InverseRefusal::not_of_effort);
-  CHECK_FALSE(posed.score({"backlash"}).loses());
+  CHECK(posed.score({"backlash"}).refusal == InverseRefusal::not_told);
+  CHECK(posed.score({"compliance"}).refusal == InverseRefusal::not_told);
+  CHECK(posed.score({"torque_fade"}).refusal == InverseRefusal::not_told);
+  CHECK(posed.score({"rate_bias"}).refusal == InverseRefusal::not_told);
 }
 
 TEST_CASE("a drive that is switched off explains nothing") {
@@ -197,7 +203,7 @@ TEST_CASE("a drive that is switched off explains nothing") {
   motion.noise_A = 0.2;
   Posed posed(model_of(motion), motion);
   const InverseScore& saturated = posed.score({"torque_saturation"});
-  CHECK((saturated.refusal != InverseRefusal::none || !(saturated.gain > 0.0)));
+  CHECK((saturated.refusal != InverseRefusal::none || !(gain(saturated) > 0.0)));
 }
 
 TEST_CASE("a true cause does not lose, and one that is not there gains nothing") {
@@ -206,12 +212,12 @@ TEST_CASE("a true cause does not lose, and one that is not there gains nothing")
     return (rate > 0.0 ? 0.05 : -0.05) + 0.1 * std::sin(angle + 0.5);
   };
   Posed posed(model_of(motion), motion);
-  CHECK_FALSE(posed.score({"coulomb_friction"}).loses());
-  CHECK_FALSE(posed.score({"imbalance"}).loses());
+  CHECK(gain(posed.score({"coulomb_friction"})) > 0.0);
+  CHECK(gain(posed.score({"imbalance"})) > 0.0);
   const InverseScore& both = posed.score({"coulomb_friction", "imbalance"});
   CHECK(both.share < 0.03);
-  CHECK(both.gain > posed.score({"coulomb_friction"}).gain);
-  CHECK(posed.score({"coulomb_friction", "imbalance", "cable_spring"}).gain < both.gain + 1.0);
+  CHECK(gain(both) > gain(posed.score({"coulomb_friction"})));
+  CHECK(gain(posed.score({"coulomb_friction", "imbalance", "cable_spring"})) < gain(both) + 1.0);
 }
 
 TEST_CASE(
@@ -225,7 +231,7 @@ TEST_CASE(
                    "quadratic_drag", "load_friction", "cogging", "torque_ripple"});
   std::size_t free = many.constants.size();
   for (const InverseEstimate& one : many.parameters) free += one.fitted ? 1 : 0;
-  REQUIRE(many.judged);
+  REQUIRE(many.refusal != InverseRefusal::not_told);
   CHECK(free >= 16);
   CHECK(many.share < 1.1 * few.share);
 }

@@ -51,14 +51,13 @@ std::vector<Inputs> inputs_of(std::vector<PreparedRecording>& prepared) {
 void print(const char* what, const InverseScore& score, const Model& model) {
   std::string ids;
   for (const auto* effect : score.effects) ids += (ids.empty() ? "" : " + ") + effect->info.id;
-  if (!score.judged) {
-    std::printf("  %-8s %-44s %s\n", what, ids.c_str(), to_string(score.refusal));
+  if (score.refusal == InverseRefusal::not_told) {
+    std::printf("  %-8s %-44s not told\n", what, ids.c_str());
     return;
   }
-  std::printf("  %-8s %-44s %5.1f %% (train %5.1f)  gain %7.2f +- %6.2f of %zu", what, ids.c_str(),
-              100.0 * score.share, 100.0 * score.train_share, score.gain, score.gain_error,
-              score.block_gain.size());
-  if (score.refusal != InverseRefusal::none) std::printf("  [%s]", to_string(score.refusal));
+  std::printf("  %-8s %-44s %5.1f %%", what, ids.c_str(), 100.0 * score.share);
+  if (score.refusal != InverseRefusal::none)
+    std::printf("  [%s]", score.refusal == InverseRefusal::of_stamps ? "of stamps" : "not itself");
   for (const InverseEstimate& one : score.parameters)
     if (one.fitted)
       std::printf("  %s %.3g(%.1g)", one.effect->info.parameters[one.parameter].name.c_str(), one.value,
@@ -89,17 +88,17 @@ std::vector<std::string> tell(const fs::path& folder, bool details) {
     list.push_back(effect->info.id);
     ids += (ids.empty() ? "" : " + ") + effect->info.id;
   }
-  std::printf("%-18s %4.0f %% -> %3.0f %%  %-45s loop %s (%.4f), up to %.3g Hz, %.2f s of %ld rows\n",
+  std::printf("%-18s %4.0f %% -> %3.0f %%  %-45s loop %s, %.2f s of %ld rows\n",
               fs::absolute(folder).lexically_normal().filename().string().c_str(),
-              100.0 * problem.nothing().share, 100.0 * told.share,
-              !problem.is_judged() ? to_string(problem.refusal())
+              100.0 * problem.score({}).share, 100.0 * told.share,
+              !problem.is_judged() ? "not judged"
               : ids.empty()        ? "nothing"
                                    : ids.c_str(),
-              to_string(problem.loop().kind), problem.loop().roughness, problem.low_pass_Hz(), took_s,
-              static_cast<long>(rows));
+              to_string(problem.loop()), took_s, static_cast<long>(rows));
   if (!details) return list;
-  print("nothing", problem.nothing(), model);
-  for (const InverseScore& one : problem.singles()) print("single", one, model);
+  print("nothing", problem.score({}), model);
+  for (const auto& entry : catalogue.entries())
+    if (entry.hooks.any_axis()) print("single", problem.score({&entry}), model);
   constexpr std::size_t most = 8;
   std::size_t shown = 0;
   for (const InverseProposal& one : proposals)

@@ -66,10 +66,9 @@ public:
   /// @param effort  must outlive this object
   EffortLead(EffortProblem& effort, const FitProblem& problem) : effort_(effort) {
     std::set<std::vector<const CatalogueEntry*>> seen{{}};
-    std::vector<InverseScore> scores{effort.nothing()};
+    std::vector<InverseScore> scores{effort.score({})};
     for (const InverseProposal& proposal : effort.proposals()) {
-      const bool counts = proposal.score.judged && proposal.score.refusal == InverseRefusal::none;
-      if (counts && scores.size() < most && seen.insert(sorted(proposal.score.effects)).second)
+      if (scores.size() < most && seen.insert(sorted(proposal.score.effects)).second)
         scores.push_back(proposal.score);
       is_told_ = is_told_ || proposal.is_told;
     }

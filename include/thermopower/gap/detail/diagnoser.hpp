@@ -57,16 +57,16 @@ public:
     stage("weighing causes");
     if (model_.axis && !model_.own) {
       effort_.emplace(model_, catalogue_, train_inputs_, held_out_inputs_, options_.without);
-      result_.loop = to_string(effort_->loop().kind);
+      result_.loop = to_string(effort_->loop());
     }
     // Where a target is recorded the loop is known to be closed: motion tells next to nothing, and no search is needed.
-    if (effort_is_measured() && effort_->loop().kind == LoopKind::closed_recorded) {
+    if (effort_is_measured() && effort_->loop() == LoopKind::closed_recorded) {
       if (auto told = from_effort()) return report_on(told->first, told->second);
     }
     const InverseScore proposed = effort_is_measured() ? effort_->told() : InverseScore();
     // In a loop that somebody closes the effort is asked, too, where the motion leaves a gap.
     const bool effort_may_answer =
-        effort_is_measured() && effort_->loop().is_closed() && !proposed.effects.empty();
+        effort_is_measured() && is_closed(effort_->loop()) && !proposed.effects.empty();
     const auto search = [&](bool effort_answers) {
       return CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where, proposed, effort_answers)
           .run();
@@ -194,7 +194,7 @@ private:
   bool leave_out_what_effort_denies(std::vector<Candidate>& candidates) {
     constexpr double hardly = 1e-3, worse = 1.15;
     const auto has_no_use = [&](const Explanation& of) {
-      return effort_->loop().is_closed() &&
+      return is_closed(effort_->loop()) &&
              std::any_of(of.effects.begin(), of.effects.end(),
                          [&](const CatalogueEntry* one) { return effort_->has_no_use_for(*one); });
     };
@@ -239,8 +239,7 @@ private:
 
   /// Adds what the effort says to the table, where a controller makes it.
   void add_effort(const Candidate& chosen) {
-    if (!effort_is_measured() || !(effort_->loop().kind == LoopKind::closed_recorded || effort_leads_))
-      return;
+    if (!effort_is_measured() || !(effort_->loop() == LoopKind::closed_recorded || effort_leads_)) return;
     const auto vector = [](const Eigen::VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
     const std::vector<double> before = vector(effort_->held_out_residual_as_configured()),
                               constants = vector(effort_->held_out_residual({}));

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/fit/statistical_model.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/propose/effort_rows.hpp>
 #include <thermopower/gap/propose/low_pass.hpp>
@@ -30,35 +31,57 @@ struct EffortPoint {
   std::vector<plant::AddedEffect<double>> effects;  ///< that act besides the model's own
 };
 
-/// A number of an EffortPoint that a fit moves.
+/// A number of an EffortPoint that a fit moves, and what is known of it.
 struct EffortCoordinate {
   bool is_constant = false;   ///< a factor; else a parameter
   std::size_t constant = 0;   ///< place among the factors
   std::size_t effect = 0;     ///< place among the effects
   std::size_t parameter = 0;  ///< place among its parameters
+  double lower = 0.0;         ///< of the number
+  double upper = 0.0;         ///< of the number
+  bool logarithmic = false;   ///< a parameter that moves by factors
+  bool is_place = false;      ///< a constant that is off by a difference
+  Prior prior;                ///< of a constant's logarithm or place; none of a parameter
+  double first_reach = 0.0;   ///< of a constant: standard deviation of where the first step looks for it
 
   /// The number.
   double& of(EffortPoint& point) const {
     assert(is_constant ? constant < point.factors.size() : effect < point.effects.size());
     return is_constant ? point.factors[constant] : point.effects[effect].parameters[parameter];
   }
+
+  /// What the prior is on: the logarithm of a factor, else the number.
+  double away(double number) const { return is_place || !is_constant ? number : std::log(number); }
+
+  /// Change of that per change of the number; a factor near 0 is not held there.
+  double away_per_number(double number) const {
+    constexpr double least = 0.1;
+    return is_place || !is_constant ? 1.0 : 1.0 / std::max(number, least);
+  }
 };
 
-/// The residuals at the rows that count.
+/// Residuals of effort at some rows.
 struct EffortResiduals {
   Eigen::VectorXd effort;     ///< measured less needed, A or V
-  Eigen::MatrixXd jacobian;   ///< its derivatives by the coordinates; empty where not asked for
-  Eigen::Index flat = 0;      ///< rows at which another effort would not change the torque
-  std::vector<bool> is_flat;  ///< of each row
+  Eigen::MatrixXd jacobian;   ///< its derivatives by the coordinates; no columns where not asked for
+  std::vector<bool> is_flat;  ///< of each row: another effort would not change the torque
+
+  /// Rows that are flat.
+  double flat() const { return static_cast<double>(std::count(is_flat.begin(), is_flat.end(), true)); }
+};
+
+/// A row of the grid.
+struct EffortRow {
+  std::size_t piece = 0;  ///< it is of
+  Eigen::Index row = 0;   ///< of the grid
 };
 
 /// The rows of one part of the data at which residuals are compared. They move, are away from the ends, and are as many as
 /// the low-pass leaves independent.
 struct ComparedRows {
-  std::vector<Eigen::Index> rows;  ///< of the grid
-  std::vector<std::size_t> piece;  ///< of each
-  Eigen::VectorXd effort;          ///< measured, A or V
-  double effort_rms = 0.0;         ///< of that
+  std::vector<EffortRow> rows;  ///< in order
+  Eigen::VectorXd effort;       ///< measured, A or V
+  double effort_rms = 0.0;      ///< of that
 
   /// How many there are.
   Eigen::Index size() const { return static_cast<Eigen::Index>(rows.size()); }
@@ -78,20 +101,20 @@ public:
         still_rad_per_s_(rest_rad_per_s / propose_thresholds.rest),
         early_samples_(early_samples) {
     std::vector<double> effort;
+    constexpr Eigen::Index edge = propose_thresholds.at_the_edge;
     for (std::size_t k = 0; k < rows.pieces.size(); ++k) {
       const EffortPiece& piece = rows.pieces[k];
-      const Eigen::Index edge = propose_thresholds.at_the_edge;
+      for (Eigen::Index row = piece.begin; row < piece.end; ++row) all_.push_back({k, row});
       for (Eigen::Index row = piece.begin + edge; row < piece.end - edge;
            row += propose_thresholds.rows_between) {
         if (!(std::abs(rows.rate_rad_per_s[row]) > rest_rad_per_s)) continue;
-        compared_.rows.push_back(row);
-        compared_.piece.push_back(k);
+        compared_.rows.push_back({k, row});
+        compared_in_all_.push_back(static_cast<Eigen::Index>(all_.size()) - (piece.end - row));
         effort.push_back(rows.effort(piece, row, -early_rows(piece)));
       }
     }
     compared_.effort =
         Eigen::Map<const Eigen::VectorXd>(effort.data(), static_cast<Eigen::Index>(effort.size()));
-    assert(compared_.rows.size() == compared_.piece.size());
     compared_.effort_rms =
         effort.empty() ? 0.0 : std::sqrt(compared_.effort.squaredNorm() / static_cast<double>(effort.size()));
   }
@@ -111,67 +134,33 @@ public:
   /// Residuals at a point, at the compared rows.
   /// @param free  coordinates that derivatives are wanted of; empty: none
   EffortResiduals evaluate(const EffortPoint& point, const std::vector<EffortCoordinate>& free) const {
-    EffortResiduals all;
-    const Eigen::Index n = rows_.rows(), columns = static_cast<Eigen::Index>(free.size());
-    Eigen::VectorXd effort(n);
-    Eigen::MatrixXd slopes(n, columns);
-    std::vector<bool> flat(static_cast<std::size_t>(n), false);
-    in_passes(free, [&](auto scalar, const std::vector<EffortCoordinate>& some, Eigen::Index first) {
-      typedef decltype(scalar) Scalar;
-      const Needed<Scalar> needed(*this, point, some);
-      Eigen::MatrixXd part(n, static_cast<Eigen::Index>(some.size()));
-      for (const EffortPiece& piece : rows_.pieces)
-        for (Eigen::Index row = piece.begin; row < piece.end; ++row)
-          flat[static_cast<std::size_t>(row)] = needed.at(piece, row, effort, part, row);
-      slopes.middleCols(first, part.cols()) = part;
-    });
-    const LowPass low_pass(propose_thresholds.residual_cutoff);
+    EffortResiduals all = unfiltered(point, free, all_);
+    constexpr double cutoff = propose_thresholds.residual_cutoff;
+    Eigen::Index begin = 0;
     for (const EffortPiece& piece : rows_.pieces) {
-      const Eigen::Index length = piece.end - piece.begin;
-      low_pass(effort.segment(piece.begin, length));
-      for (Eigen::Index c = 0; c < columns; ++c) low_pass(slopes.col(c).segment(piece.begin, length));
+      low_pass(all.effort.segment(begin, piece.rows()), cutoff);
+      for (Eigen::Index c = 0; c < all.jacobian.cols(); ++c)
+        low_pass(all.jacobian.col(c).segment(begin, piece.rows()), cutoff);
+      begin += piece.rows();
     }
-    const Eigen::Index kept = compared_.size();
-    assert(kept <= n);
-    all.effort.resize(kept);
-    all.jacobian.resize(kept, columns);
-    all.is_flat.resize(static_cast<std::size_t>(kept));
-    for (Eigen::Index i = 0; i < kept; ++i) {
-      const Eigen::Index row = compared_.rows[static_cast<std::size_t>(i)];
-      all.effort[i] = effort[row];
-      all.jacobian.row(i) = slopes.row(row);
-      all.is_flat[static_cast<std::size_t>(i)] = flat[static_cast<std::size_t>(row)];
-      all.flat += flat[static_cast<std::size_t>(row)];
+    EffortResiduals kept{
+        Eigen::VectorXd(compared_.size()), Eigen::MatrixXd(compared_.size(), all.jacobian.cols()), {}};
+    for (Eigen::Index i = 0; i < compared_.size(); ++i) {
+      const Eigen::Index at = compared_in_all_[static_cast<std::size_t>(i)];
+      kept.effort[i] = all.effort[at];
+      kept.jacobian.row(i) = all.jacobian.row(at);
+      kept.is_flat.push_back(all.is_flat[static_cast<std::size_t>(at)]);
     }
-    return all;
+    return kept;
   }
 
   /// The same at some of the compared rows, with unfiltered residuals: to compare starts by.
   EffortResiduals glance(const EffortPoint& point, const std::vector<EffortCoordinate>& free) const {
-    const Eigen::Index every = std::max<Eigen::Index>(1, compared_.size() / propose_thresholds.scan_rows);
-    const Eigen::Index kept = compared_.size() / every, columns = static_cast<Eigen::Index>(free.size());
-    EffortResiduals all;
-    all.effort.resize(kept);
-    all.jacobian.resize(kept, columns);
-    in_passes(free, [&](auto scalar, const std::vector<EffortCoordinate>& some, Eigen::Index first) {
-      typedef decltype(scalar) Scalar;
-      const Needed<Scalar> needed(*this, point, some);
-      Eigen::MatrixXd part(kept, static_cast<Eigen::Index>(some.size()));
-      Eigen::Index flat = 0;
-      for (Eigen::Index i = 0; i < kept; ++i) {
-        const std::size_t at = static_cast<std::size_t>(i * every);
-        flat += needed.at(rows_.pieces[compared_.piece[at]], compared_.rows[at], all.effort, part, i);
-      }
-      all.flat = flat;
-      all.jacobian.middleCols(first, part.cols()) = part;
-    });
-    return all;
-  }
-
-  /// From effort to torque in s at a point, the servo's own delay included.
-  double delay_s(const EffortPoint& point) const {
-    const plant::Instance<double> instance(model_, point.factors, point.effects, catalogue_);
-    return delay_of(instance);
+    const std::size_t size = compared_.rows.size();
+    const std::size_t every = std::max<std::size_t>(1, size / propose_thresholds.scan_rows);
+    std::vector<EffortRow> some;
+    for (std::size_t k = 0; k < size / every; ++k) some.push_back(compared_.rows[k * every]);
+    return unfiltered(point, free, some);
   }
 
 private:
@@ -183,21 +172,34 @@ private:
     return shape.delayed ? shape.delay_s : plant::constant<Scalar>(0.0);
   }
 
-  /// Derivatives by more coordinates than a scalar carries are taken in passes. Direction 0 is the effort's.
-  template <class Use>
-  static void in_passes(const std::vector<EffortCoordinate>& free, Use&& use) {
+  /// Residuals at some rows. Derivatives by more coordinates than a scalar carries are taken in passes; direction 0 is the effort's.
+  EffortResiduals unfiltered(const EffortPoint& point, const std::vector<EffortCoordinate>& free,
+                             const std::vector<EffortRow>& at) const {
     constexpr std::size_t most = static_cast<std::size_t>(plant::wide_dual_width) - 1;
+    const Eigen::Index count = static_cast<Eigen::Index>(at.size());
+    EffortResiduals all{Eigen::VectorXd(count),
+                        Eigen::MatrixXd(count, static_cast<Eigen::Index>(free.size())),
+                        std::vector<bool>(at.size())};
     for (std::size_t first = 0; first == 0 || first < free.size(); first += most) {
-      const auto from = free.begin() + static_cast<std::ptrdiff_t>(first);
       const std::vector<EffortCoordinate> some(
-          from, from + static_cast<std::ptrdiff_t>(std::min(most, free.size() - first)));
-      with_scalar(static_cast<Eigen::Index>(some.size()),
-                  [&](auto scalar) { use(scalar, some, static_cast<Eigen::Index>(first)); });
+          free.begin() + static_cast<std::ptrdiff_t>(first),
+          free.begin() + static_cast<std::ptrdiff_t>(std::min(first + most, free.size())));
+      with_scalar(static_cast<int>(some.size()), [&](auto scalar) {
+        const Needed<decltype(scalar)> needed(*this, point, some);
+        Eigen::MatrixXd slopes(count, static_cast<Eigen::Index>(some.size()));
+        for (Eigen::Index i = 0; i < count; ++i) {
+          const EffortRow& one = at[static_cast<std::size_t>(i)];
+          all.is_flat[static_cast<std::size_t>(i)] =
+              needed.at(rows_.pieces[one.piece], one.row, all.effort, slopes, i);
+        }
+        all.jacobian.middleCols(static_cast<Eigen::Index>(first), slopes.cols()) = slopes;
+      });
     }
+    return all;
   }
 
   template <class Use>
-  static void with_scalar(Eigen::Index directions, Use&& use) {
+  static void with_scalar(int directions, Use&& use) {
     if (directions == 0) use(0.0);
     else if (directions < plant::dual_width) use(plant::Dual());
     else use(plant::WideDual());
@@ -297,7 +299,9 @@ private:
   const EffortRows& rows_;
   const double still_rad_per_s_;
   const double early_samples_;
+  std::vector<EffortRow> all_;  ///< of the pieces
   ComparedRows compared_;
+  std::vector<Eigen::Index> compared_in_all_;  ///< place of each in `all_`
 };
 
 }  // namespace thermopower::gap::engine

@@ -25,12 +25,14 @@ namespace thermopower::gap::engine {
 
 /// A stretch of motion without a hole, on an even grid.
 struct EffortPiece {
-  Eigen::Index begin = 0;     ///< first row of the grid
-  Eigen::Index end = 0;       ///< row after the last
-  std::size_t recording = 0;  ///< it is of
-  std::size_t run = 0;        ///< it is of, counted over all recordings
-  double interval_s = 0.0;    ///< between the rows of the grid
-  double half_sample = 0.5;   ///< half an interval between samples, in rows of the grid
+  Eigen::Index begin = 0;    ///< first row of the grid
+  Eigen::Index end = 0;      ///< row after the last
+  std::size_t run = 0;       ///< it is of, counted over all recordings
+  double interval_s = 0.0;   ///< between the rows of the grid
+  double half_sample = 0.5;  ///< half an interval between samples, in rows of the grid
+
+  /// How many rows it has.
+  Eigen::Index rows() const { return end - begin; }
 };
 
 /// The recordings of one part, row by row: the motion, and the effort that went with it, both through one low-pass.
@@ -69,18 +71,30 @@ public:
                      ? sampled.rate_noise * std::sqrt(2.0 * cutoff)
                      : sampled.angle_noise * std::sqrt(2.0 / 3.0) * plant::rad_per_turn *
                            std::pow(cutoff, 1.5) / sampled.stretches.front().interval_s;
-    keep(most);
+    spread_out(pieces, most, [](EffortPiece one, Eigen::Index begin, Eigen::Index end) {
+      one.end = one.begin + end;
+      one.begin += begin;
+      return one;
+    });
+    for (const EffortPiece& one : pieces) grid.runs.push_back({one.begin, one.end, {}});
   }
-
-  /// Rows of the grid.
-  Eigen::Index rows() const { return grid.t_s.size(); }
 
   /// Effort that acts at a row, A or V.
   /// @param late_rows  intervals from effort to torque, counted from the instant at which a held effort is set; less than 0 where
   ///                   an effort is measured at its stamp
   double effort(const EffortPiece& piece, Eigen::Index row, double late_rows) const {
     const double at = static_cast<double>(row - piece.begin) - piece.half_sample - late_rows;
-    return cubic(piece, at);
+    // Catmull's and Rom's cubic between the rows.
+    const Eigen::Index n = piece.rows();
+    const double inside = std::clamp(at, 0.0, static_cast<double>(n - 1));
+    const Eigen::Index i = std::min(static_cast<Eigen::Index>(inside), n - 2);
+    const double x = inside - static_cast<double>(i);
+    const auto value = [&](Eigen::Index k) {
+      return effort_[piece.begin + std::clamp<Eigen::Index>(k, 0, n - 1)];
+    };
+    const double p0 = value(i - 1), p1 = value(i), p2 = value(i + 1), p3 = value(i + 2);
+    return p1 +
+           0.5 * x * (p2 - p0 + x * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + x * (3.0 * (p1 - p2) + p3 - p0)));
   }
 
   /// Change of effort() per interval by which it comes later.
@@ -91,31 +105,30 @@ public:
 
 private:
   void fill(const SampledMotion::Stretch& one, double cutoff, Eigen::Index every, Eigen::Index& filled) {
+    const Eigen::Index count = (one.effort.size() + every - 1) / every;
     EffortPiece piece;
-    piece.recording = one.recording;
+    piece.begin = filled;
+    piece.end = filled += count;
     piece.run = one.run;
     piece.interval_s = one.interval_s * static_cast<double>(every);
-    piece.begin = filled;
-    const Eigen::Index count = (one.effort.size() + every - 1) / every;
-    piece.end = filled += count;
+    piece.half_sample = 0.5 / static_cast<double>(every);
+    pieces.push_back(piece);
     assert(piece.end <= grid.t_s.size());
-    assert((one.rate.size() == 0 || one.rate.size() == one.effort.size()) &&
-           (one.angle.size() == 0 || one.angle.size() == one.effort.size()));
-    const LowPass low_pass(cutoff);
     const auto put = [&](const Eigen::VectorXd& fine, Eigen::VectorXd& to) {
+      assert(fine.size() == one.effort.size());
       for (Eigen::Index i = 0; i < count; ++i) to[piece.begin + i] = fine[i * every];
     };
     const auto smooth = [&](Eigen::VectorXd values, Eigen::VectorXd& to) {
-      low_pass(values);
+      low_pass(values, cutoff);
       put(values, to);
     };
     // A held value acts from its sample on: its middle lies half a sample later, of the fine grid.
     smooth(one.effort, effort_);
     if (one.torque_Nm.size() > 0) smooth(one.torque_Nm, grid.torque_Nm);
     if (one.motor_C.size() > 0) put(one.motor_C, grid.covariate_motor_C);
-    const Eigen::VectorXd rate = SampledMotion::rate(one, cutoff);
+    const Eigen::VectorXd rate = one.smooth_rate(cutoff);
     put(rate, rate_rad_per_s);
-    put(SampledMotion::slope(rate, one.interval_s), acceleration_rad_per_s2);
+    put(one.slope(rate), acceleration_rad_per_s2);
     if (one.angle.size() > 0) smooth(one.angle, angle_rad);
     else
       for (Eigen::Index i = piece.begin + 1; i < piece.end; ++i)
@@ -123,48 +136,6 @@ private:
             angle_rad[i - 1] + 0.5 * (rate_rad_per_s[i - 1] + rate_rad_per_s[i]) * piece.interval_s;
     for (Eigen::Index i = 0; i < count; ++i)
       grid.t_s[piece.begin + i] = one.from_s + static_cast<double>(i) * piece.interval_s;
-    piece.half_sample = 0.5 / static_cast<double>(every);
-    pieces.push_back(piece);
-  }
-
-  /// Keeps parts of the pieces, spread evenly over long ones.
-  void keep(Eigen::Index most) {
-    constexpr Eigen::Index parts = 24, least = 200;
-    if (rows() > most) {
-      const Eigen::Index length = std::max(least, most / parts);
-      std::vector<EffortPiece> all;
-      for (const EffortPiece& one : pieces) {
-        const Eigen::Index size = one.end - one.begin, count = std::max<Eigen::Index>(1, size / length);
-        for (Eigen::Index k = 0; k < count; ++k) {
-          EffortPiece part = one;
-          part.begin = one.begin + k * size / count;
-          part.end = one.begin + (k + 1) * size / count;
-          all.push_back(part);
-        }
-      }
-      const double every = static_cast<double>(rows()) / static_cast<double>(most);
-      pieces.clear();
-      for (double at = 0.5 * every; at < static_cast<double>(all.size()); at += every)
-        pieces.push_back(all[static_cast<std::size_t>(at)]);
-    }
-    for (const EffortPiece& one : pieces) {
-      assert(one.begin >= 0 && one.begin <= one.end && one.end <= rows());
-      grid.runs.push_back({one.begin, one.end, {}});
-    }
-  }
-
-  /// The low-passed effort between its rows: Catmull's and Rom's cubic.
-  double cubic(const EffortPiece& piece, double at) const {
-    const Eigen::Index n = piece.end - piece.begin;
-    const double inside = std::clamp(at, 0.0, static_cast<double>(n - 1));
-    const Eigen::Index i = std::min(static_cast<Eigen::Index>(inside), n - 2);
-    const double x = inside - static_cast<double>(i);
-    const auto value = [&](Eigen::Index k) {
-      return effort_[piece.begin + std::clamp<Eigen::Index>(k, 0, n - 1)];
-    };
-    const double p0 = value(i - 1), p1 = value(i), p2 = value(i + 1), p3 = value(i + 2);
-    return p1 +
-           0.5 * x * (p2 - p0 + x * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + x * (3.0 * (p1 - p2) + p3 - p0)));
   }
 
   Eigen::VectorXd effort_;  ///< means over the intervals, low-passed

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <thermopower/gap/model.hpp>
-#include <thermopower/gap/propose/inverse_score.hpp>
 #include <thermopower/gap/propose/thresholds.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/rows.hpp>
@@ -11,21 +10,28 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace thermopower::gap::engine {
 
-/// Whether a loop is closed, and how that is known.
-struct LoopEvidence {
-  LoopKind kind = LoopKind::unknown;  ///< who makes the effort
-  double roughness = 0.0;  ///< noise of the effort over its RMS: a controller passes on that of its sensors
-  double repeated = 0.0;   ///< share of the rows whose effort is that of the row before
-
-  /// Whether a controller makes the effort of the motion.
-  bool is_closed() const { return kind == LoopKind::closed_recorded || kind == LoopKind::closed_found; }
+/// Who makes the effort.
+enum class LoopKind {
+  unknown,          ///< too little data, or no effort recorded
+  open,             ///< effort comes from outside, and knows nothing of the motion
+  closed_recorded,  ///< a target is recorded: a controller makes the effort of it and of the motion
+  closed_found  ///< no target is recorded, and the effort is as rough as what a controller makes of measured motion
 };
+
+/// Whether a controller makes the effort of the motion.
+inline bool is_closed(LoopKind kind) {
+  return kind == LoopKind::closed_recorded || kind == LoopKind::closed_found;
+}
+
+/// As reports print it.
+inline const char* to_string(LoopKind kind) {
+  return is_closed(kind) ? "closed" : kind == LoopKind::open ? "open" : "unknown";
+}
 
 /// Who makes the effort in recordings.
 ///
@@ -33,13 +39,12 @@ struct LoopEvidence {
 /// whoever made it wrote it down. One that a controller makes of measured motion is as rough as that, and one that is measured has
 /// noise of its own.
 /// @param recordings  prepared ones
-inline LoopEvidence loop_of(const Model& model, const std::vector<Inputs>& recordings) {
-  LoopEvidence evidence;
+inline LoopKind loop_of(const Model& model, const std::vector<Inputs>& recordings) {
   double square = 0.0, noise = 0.0, same = 0.0, rows = 0.0;
-  bool targeted = false;
   for (const Inputs& inputs : recordings) {
     if (!inputs.axis()) continue;
-    targeted = targeted || inputs.closed_loop || inputs.target_deg.size() > 0 || inputs.target_dps.size() > 0;
+    if (inputs.closed_loop || inputs.target_deg.size() > 0 || inputs.target_dps.size() > 0)
+      return LoopKind::closed_recorded;
     const Eigen::VectorXd& effort = plant::command(inputs, model.axis->voltage_driven());
     if (effort.size() < 2) continue;
     const double n = static_cast<double>(effort.size());
@@ -48,15 +53,10 @@ inline LoopEvidence loop_of(const Model& model, const std::vector<Inputs>& recor
     for (Eigen::Index i = 1; i < effort.size(); ++i) same += effort[i] == effort[i - 1] ? 1.0 : 0.0;
     rows += n;
   }
-  if (square > 0.0) {
-    evidence.roughness = std::sqrt(noise / square);
-    evidence.repeated = same / rows;
-    const bool from_outside = evidence.repeated > propose_thresholds.repeats ||
-                              evidence.roughness < propose_thresholds.smooth_effort;
-    evidence.kind = from_outside ? LoopKind::open : LoopKind::closed_found;
-  }
-  if (targeted) evidence.kind = LoopKind::closed_recorded;
-  return evidence;
+  if (!(square > 0.0)) return LoopKind::unknown;
+  const bool repeats = same / rows > propose_thresholds.repeats;
+  const bool is_smooth = std::sqrt(noise / square) < propose_thresholds.smooth_effort;
+  return repeats || is_smooth ? LoopKind::open : LoopKind::closed_found;
 }
 
 }  // namespace thermopower::gap::engine

@@ -18,8 +18,8 @@ namespace thermopower::gap::engine {
 
 /// Rate below which rows rest, rad/s.
 inline double rest_rate(const EffortRows& rows) {
-  const double rms =
-      rows.rows() > 0 ? std::sqrt(rows.rate_rad_per_s.squaredNorm() / static_cast<double>(rows.rows())) : 0.0;
+  const Eigen::VectorXd& rate = rows.rate_rad_per_s;
+  const double rms = rate.size() > 0 ? std::sqrt(rate.squaredNorm() / static_cast<double>(rate.size())) : 0.0;
   return propose_thresholds.rest * (std::max(propose_thresholds.still_share * rms, rows.rate_noise) + 1e-9);
 }
 
@@ -36,7 +36,7 @@ public:
       if (n < propose_thresholds.least_residuals || !(compared.effort_rms > 0.0)) return;
       Eigen::MatrixXd columns(n, 6);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Index row = compared.rows[static_cast<std::size_t>(i)];
+        const Eigen::Index row = compared.rows[static_cast<std::size_t>(i)].row;
         const double rate = rows.rate_rad_per_s[row], angle = rows.angle_rad[row];
         columns.row(i) << rows.acceleration_rad_per_s2[row], rate, std::tanh(rate / data.still_rad_per_s()),
             1.0, std::sin(angle), std::cos(angle);

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
+
 namespace thermopower::gap::engine {
 
 /// How effort and motion are compared, and when a term is proposed. Held by tests/gap/propose/effort_problem_test.cpp.
@@ -26,7 +28,7 @@ struct ProposeThresholds {
   double longest_hole = 10.0;           ///< intervals without a sample that are bridged
   Eigen::Index most_train_rows = 5000;  ///< more rows are thinned to pieces of this many in all
   Eigen::Index most_held_rows = 4000;   ///< the same of held-out rows
-  Eigen::Index scan_rows = 1500;        ///< rows that starts are compared on
+  std::size_t scan_rows = 1500;         ///< rows that starts are compared on
   int least_residuals = 24;             ///< of the training data; fewer determine nothing
   int blocks_in_run = 8;                ///< of held-out data, at most
   int residuals_in_block = 8;           ///< at least
@@ -48,7 +50,7 @@ struct ProposeThresholds {
       0.8;  ///< share of rows whose effort is that of the row before: above, it comes from outside
   double smooth_effort =
       0.0018;  ///< noise over RMS of an effort that comes from outside; controllers passed on 0.003 and more
-  int most_causes = 3;  ///< of a proposal
+  std::size_t most_causes = 3;  ///< of a proposal
 };
 
 /// The values in force.
