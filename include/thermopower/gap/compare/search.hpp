@@ -7,7 +7,7 @@
 #include <thermopower/gap/compare/thresholds.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
-#include <thermopower/gap/fit/short_windows.hpp>
+#include <thermopower/gap/fit/segment_choice.hpp>
 
 #include <algorithm>
 #include <array>

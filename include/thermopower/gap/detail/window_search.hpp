@@ -11,8 +11,8 @@
 #include <thermopower/gap/detail/attempt.hpp>
 #include <thermopower/gap/detail/posing.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
-#include <thermopower/gap/fit/short_windows.hpp>
-#include <thermopower/gap/fit/single_causes.hpp>
+#include <thermopower/gap/fit/segment_choice.hpp>
+#include <thermopower/gap/fit/judgeable.hpp>
 #include <thermopower/gap/compare/fit_noise.hpp>
 #include <thermopower/gap/report/last_fit.hpp>
 

@@ -129,7 +129,7 @@ public:
                          const std::vector<Start>& starts) {
     const auto by_signal = residuals(candidate, problem, starts);
     SignalSums result;
-    for (std::size_t i = 0; i < signal_count; ++i) result.set(i, by_signal[i], 1.0);
+    for (std::size_t i = 0; i < signal_count; ++i) result.set(i, by_signal[i]);
     return result;
   }
 
@@ -161,21 +161,26 @@ public:
       return was_worth_it;
     }
     Eigen::VectorXd from = candidate.fit.point;
+    const std::vector<Owner> owners = owners_in(candidate), other_owners = owners_in(other);
     for (std::size_t i = 0; i < candidate.list.size(); ++i)
-      for (std::size_t k = 0; k < other.list.size(); ++k)
-        if (candidate.list[i].name == other.list[k].name || same_parameter(candidate, i, other, k) ||
-            is_where_equal(candidate, i, other, k))
-          from[static_cast<Eigen::Index>(i)] = std::clamp(other.fit.point[static_cast<Eigen::Index>(k)],
-                                                          candidate.list[i].lower, candidate.list[i].upper);
+      for (std::size_t k = 0; k < other.list.size(); ++k) {
+        const Coordinate &one = candidate.list[i], &its = other.list[k];
+        const bool is_same = one.logarithmic == its.logarithmic && owners[i].is_like(other_owners[k]);
+        if (one.name == its.name || is_same || owners[i].is_where_equal(other_owners[k]))
+          from[static_cast<Eigen::Index>(i)] =
+              std::clamp(other.fit.point[static_cast<Eigen::Index>(k)], one.lower, one.upper);
+      }
     // The noise may have been measured anew since the candidate was fitted: both costs are in units of the present one.
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     FitOptions in_sight = options;
     in_sight.hopeless = out_of_sight * other.train.total();
     const double lost = lost_from * other.train.total();
+    const std::vector<Start>* fitted = starts_of(other);
+    const std::vector<Start> starts = fitted != nullptr ? *fitted : problem_.measured_starts();
     if (candidate.train.total() > lost &&
-        (runs_away(candidate, from, starts_of(other)) || !(fitter.scan(from, starts_of(other)) <= lost)))
+        (runs_away(candidate, from, starts) || !(fitter.scan(from, &starts) <= lost)))
       return false;
-    FitResult again = fitter.minimise(from, in_sight, starts_of(other));
+    FitResult again = fitter.minimise(from, in_sight, &starts);
     if (starts_of(candidate) != nullptr && !(again.cost < fitter.cost(candidate.fit))) return true;
     candidate.fit = std::move(again);
     candidate.settled = false;
@@ -192,10 +197,9 @@ private:
   /// Whether a simulation at other coordinates is worse than a candidate by orders of magnitude. It grows without an end
   /// there, in ever smaller steps, and its derivatives would take minutes and say nothing.
   bool runs_away(const Candidate& candidate, const Eigen::VectorXd& at,
-                 const std::vector<Start>* starts) const {
+                 const std::vector<Start>& starts) const {
     const double far = 1e6 * candidate.train.total();
-    return problem_.squares(candidate.explanation, candidate.list, at,
-                            starts != nullptr ? *starts : problem_.measured_starts(), far) > far;
+    return problem_.squares(candidate.explanation, candidate.list, at, starts, far) > far;
   }
 
   /// A candidate with the details of its effects free, where its fit ended without them.
@@ -217,34 +221,35 @@ private:
     return above_noise(finer) <= (1.0 - share) * above_noise(plain);
   }
 
-  /// Whether two coordinates are parameters of one name in effects of one submodel.
-  static bool same_parameter(const Candidate& one, std::size_t i, const Candidate& other, std::size_t k) {
-    const auto submodel = [](const Candidate& of, std::size_t index) {
-      const std::string& name = of.list[index].name;
-      for (const CatalogueEntry* entry : of.explanation.effects)
-        if (name.compare(0, entry->info.id.size() + 1, entry->info.id + ".") == 0)
-          return &entry->info.submodel;
-      return static_cast<const decltype(EffectInfo::submodel)*>(nullptr);
-    };
-    const auto bare = [](const std::string& name) { return name.substr(name.rfind('.')); };
-    const auto first = submodel(one, i), second = submodel(other, k);
-    return first != nullptr && second != nullptr && *first == *second &&
-           bare(one.list[i].name) == bare(other.list[k].name) &&
-           one.list[i].logarithmic == other.list[k].logarithmic;
-  }
+  /// What a coordinate belongs to; null of a constant.
+  struct Owner {
+    const CatalogueEntry* effect = nullptr;
+    const Parameter* parameter = nullptr;
 
-  /// Whether a coordinate is the first parameter of what another one's effect is where two of its own are equal: the friction that
-  /// one by direction is.
-  static bool is_where_equal(const Candidate& one, std::size_t i, const Candidate& other, std::size_t k) {
-    for (const CatalogueEntry* rich : other.explanation.effects)
-      for (const CatalogueEntry* plain : one.explanation.effects)
-        if (rich->info.where_equal && rich->info.where_equal->cause == plain->info.id &&
-            one.list[i].name == plain->info.id + "." + plain->info.parameters.front().name &&
-            other.list[k].name ==
-                rich->info.id + "." +
-                    rich->info.parameters[static_cast<std::size_t>(rich->info.where_equal->one)].name)
-          return true;
-    return false;
+    /// Whether both are parameters of one name in effects of one submodel.
+    bool is_like(const Owner& other) const {
+      return effect != nullptr && other.effect != nullptr &&
+             effect->info.submodel == other.effect->info.submodel && parameter->name == other.parameter->name;
+    }
+
+    /// Whether it is the first parameter of what the other one's effect is where two of its own are equal: the friction that one by
+    /// direction is.
+    bool is_where_equal(const Owner& other) const {
+      if (effect == nullptr || other.effect == nullptr || !other.effect->info.where_equal) return false;
+      const auto& equal = *other.effect->info.where_equal;
+      return equal.cause == effect->info.id && parameter == &effect->info.parameters.front() &&
+             other.parameter == &other.effect->info.parameters[static_cast<std::size_t>(equal.one)];
+    }
+  };
+
+  /// By coordinate.
+  static std::vector<Owner> owners_in(const Candidate& candidate) {
+    std::vector<Owner> parameters;
+    for (const CatalogueEntry* effect : candidate.explanation.effects)
+      for (const Parameter& parameter : effect->info.parameters) parameters.push_back({effect, &parameter});
+    std::vector<Owner> all(candidate.list.size() - parameters.size());
+    all.insert(all.end(), parameters.begin(), parameters.end());
+    return all;
   }
 
   /// An explanation of which nothing is known yet.
@@ -275,43 +280,36 @@ private:
     return found;
   }
 
+  /// Points to begin from: those of a fit of part of it, and every combination of the starts of the other effects' parameters.
   std::vector<Eigen::VectorXd> start_points(const Explanation& explanation, const Candidate* near) const {
     const Candidate candidate = unfitted(explanation);
-    Eigen::VectorXd base(static_cast<Eigen::Index>(candidate.list.size()));
-    for (std::size_t i = 0; i < candidate.list.size(); ++i) {
-      const Coordinate& one = candidate.list[i];
-      double value = one.start;
+    const std::vector<Coordinate>& list = candidate.list;
+    Eigen::VectorXd base(static_cast<Eigen::Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      double value = list[i].start;
       if (near != nullptr)
         for (std::size_t k = 0; k < near->list.size(); ++k)
-          if (near->list[k].name == one.name) value = near->fit.point[static_cast<Eigen::Index>(k)];
-      base[static_cast<Eigen::Index>(i)] = std::clamp(value, one.lower, one.upper);
+          if (near->list[k].name == list[i].name) value = near->fit.point[static_cast<Eigen::Index>(k)];
+      base[static_cast<Eigen::Index>(i)] = std::clamp(value, list[i].lower, list[i].upper);
     }
     std::vector<Eigen::VectorXd> points{base};
-    Eigen::Index index = static_cast<Eigen::Index>(problem_.model->calibrated().size());
-    for (const CatalogueEntry* entry : candidate.explanation.effects) {
-      const bool known =
-          near != nullptr && std::find(near->explanation.effects.begin(), near->explanation.effects.end(),
-                                       entry) != near->explanation.effects.end();
-      for (const Parameter& parameter : entry->info.parameters) {
-        if (!known)
-          points = spread(points, index, parameter, candidate.list[static_cast<std::size_t>(index)]);
-        ++index;
-      }
+    const std::vector<Owner> owners = owners_in(candidate);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (owners[i].effect == nullptr || (near != nullptr && near->explanation.has(*owners[i].effect)))
+        continue;
+      const Parameter& parameter = *owners[i].parameter;
+      const double unit =
+          parameter.starts_relative_to == Input::none ? 1.0 : scale_of(parameter.starts_relative_to);
+      std::vector<Eigen::VectorXd> wider;
+      for (const Eigen::VectorXd& point : points)
+        for (const double start : parameter.starts) {
+          const double value = list[i].coordinate_of(start * unit);
+          wider.push_back(point);
+          wider.back()[static_cast<Eigen::Index>(i)] = std::clamp(value, list[i].lower, list[i].upper);
+        }
+      points = std::move(wider);
     }
     return points;
-  }
-
-  std::vector<Eigen::VectorXd> spread(const std::vector<Eigen::VectorXd>& points, Eigen::Index index,
-                                      const Parameter& parameter, const Coordinate& coordinate) const {
-    std::vector<Eigen::VectorXd> wider;
-    for (const Eigen::VectorXd& point : points)
-      for (double start : parameter.starts) {
-        Eigen::VectorXd one = point;
-        if (parameter.starts_relative_to != Input::none) start *= scale_of(parameter.starts_relative_to);
-        one[index] = std::clamp(coordinate.coordinate_of(start), coordinate.lower, coordinate.upper);
-        wider.push_back(one);
-      }
-    return wider;
   }
 
   /// Largest magnitude of an input over the data of the fit.
@@ -319,20 +317,19 @@ private:
     double largest = 0.0;
     for (const Segment& segment : problem_.segments) {
       const Inputs& inputs = *segment.inputs;
-      const Eigen::VectorXd* values = input == Input::drive_A       ? &inputs.drive_A
-                                      : input == Input::power_param ? &inputs.power_param
-                                      : input == Input::supply_V    ? &inputs.supply_V
-                                                                    : nullptr;
-      double per_unit = 1.0;
-      if (input == Input::drive_A && inputs.closed_loop) values = &inputs.servo_A;
-      else if (input == Input::drive_A && problem_.model->axis && problem_.model->axis->voltage_driven()) {
-        values = &inputs.voltage_V;  // as a current at standstill
-        per_unit = 1.0 / problem_.model->axis->resistance_ohm;
-      }
-      if (values != nullptr && values->size() > 0)
-        largest = std::max(
-            largest,
-            per_unit * values->segment(segment.begin, segment.end - segment.begin).cwiseAbs().maxCoeff());
+      const bool is_drive = input == Input::drive_A;
+      const bool is_voltage = is_drive && !inputs.closed_loop && problem_.model->axis &&
+                              problem_.model->axis->voltage_driven();  // taken as a current at standstill
+      const Eigen::VectorXd& values = is_voltage                       ? inputs.voltage_V
+                                      : is_drive && inputs.closed_loop ? inputs.servo_A
+                                      : is_drive                       ? inputs.drive_A
+                                      : input == Input::power_param    ? inputs.power_param
+                                                                       : inputs.supply_V;
+      if (values.size() == 0) continue;
+      const double per_unit = is_voltage ? 1.0 / problem_.model->axis->resistance_ohm : 1.0;
+      largest = std::max(
+          largest,
+          per_unit * values.segment(segment.begin, segment.end - segment.begin).cwiseAbs().maxCoeff());
     }
     return largest > 0.0 ? largest : 1.0;
   }

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -79,10 +78,6 @@ private:
            static_cast<double>(std::max<Eigen::Index>(1, values.size()));
   }
 
-  double centre_of(Eigen::Index begin, Eigen::Index end) const {
-    return full_.t_s.segment(begin, end - begin).mean();
-  }
-
   bool smooth_within(Eigen::Index rows) const {
     constexpr AveragingThresholds limit;
     constexpr Eigen::Index looked_at = 400;  // blocks
@@ -110,25 +105,18 @@ private:
   Inputs averaged(Eigen::Index rows) const {
     Inputs thin = full_;
     thin.runs.clear();
-    std::vector<std::pair<Eigen::Index, Eigen::Index>> blocks;
+    std::vector<Eigen::Index> blocks;  // their first rows
     for (const RunSpan& run : full_.runs) {
       const auto begin = static_cast<Eigen::Index>(blocks.size());
-      for (Eigen::Index row = run.begin; row + rows <= run.end; row += rows)
-        blocks.push_back({row, row + rows});
+      for (Eigen::Index row = run.begin; row + rows <= run.end; row += rows) blocks.push_back(row);
       thin.runs.push_back({begin, static_cast<Eigen::Index>(blocks.size()), run.label, run.goes_on,
                            run.drawn_Ah, run.was_driven});
     }
     const auto count = static_cast<Eigen::Index>(blocks.size());
     thin.t_s.resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const auto& block = blocks[static_cast<std::size_t>(i)];
-      thin.t_s[i] = centre_of(block.first, block.second);
-    }
+    for (Eigen::Index i = 0; i < count; ++i) thin.t_s[i] = full_.t_s.segment(blocks[i], rows).mean();
     const auto picked = [&](Eigen::VectorXd& values) {
-      if (values.size() == 0) return;
-      const Eigen::VectorXd whole = values;
-      values.resize(count);
-      for (Eigen::Index i = 0; i < count; ++i) values[i] = whole[blocks[static_cast<std::size_t>(i)].first];
+      if (values.size() > 0) values = Eigen::VectorXd(values(blocks));
     };
     for (Eigen::VectorXd* values : {&thin.power_param, &thin.supply_V, &thin.ambient_C, &thin.airspeed_mps,
                                     &thin.neighbour_C, &thin.covariate_rate_dps, &thin.covariate_motor_C,
@@ -146,20 +134,13 @@ private:
     for (Eigen::VectorXd Inputs::*input : {&Inputs::drive_A, &Inputs::voltage_V, &Inputs::torque_Nm})
       if ((full_.*input).size() > 0) thin.*input = held_means(full_.*input, thin);
     for (std::size_t k = 0; k < thin.measured.size(); ++k) {
-      if (full_.measured[k].size() == 0) continue;
-      const bool moves =
-          k == static_cast<std::size_t>(Signal::angle_deg) || k == static_cast<std::size_t>(Signal::rate_dps);
-      if (!moves) {
-        picked(thin.measured[k]);
-        continue;
-      }
-      thin.measured[k].resize(count);
+      Eigen::VectorXd& values = thin.measured[k];
+      const auto signal = static_cast<Signal>(k);
+      picked(values);
+      if (values.size() == 0 || (signal != Signal::angle_deg && signal != Signal::rate_dps)) continue;
       const double known = known_share(full_.measured[k]);
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const auto& block = blocks[static_cast<std::size_t>(i)];
-        thin.measured[k][i] =
-            at_centre(full_.measured[k], full_.t_s, block.first, block.second, thin.t_s[i], known);
-      }
+      for (Eigen::Index i = 0; i < count; ++i)
+        values[i] = at_centre(full_.measured[k], full_.t_s, blocks[i], blocks[i] + rows, thin.t_s[i], known);
     }
     return thin;
   }

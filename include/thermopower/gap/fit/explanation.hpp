@@ -56,26 +56,26 @@ struct Explanation {
     return list;
   }
 
+  /// Whether an effect is one of its causes.
+  bool has(const CatalogueEntry& effect) const { return is_in(effects, &effect); }
+  /// Whether a constant is one. @param constant  index into Model::calibrated()
+  bool releases(int constant) const { return is_in(released, constant); }
+
   /// Whether every cause of `other` is one of its own.
   bool includes(const Explanation& other) const {
-    const auto within = [](const auto& all, const auto& few) {
-      for (const auto& one : few)
-        if (std::find(all.begin(), all.end(), one) == all.end()) return false;
-      return true;
-    };
-    return within(effects, other.effects) && within(released, other.released);
+    return std::all_of(other.effects.begin(), other.effects.end(),
+                       [&](const CatalogueEntry* one) { return has(*one); }) &&
+           std::all_of(other.released.begin(), other.released.end(), [&](int one) { return releases(one); });
   }
 
   /// Both sets of causes together.
   Explanation with(const Explanation& other) const {
     Explanation both = *this;
     both.refined = refined || other.refined;
-    for (const CatalogueEntry* entry : other.effects)
-      if (std::find(both.effects.begin(), both.effects.end(), entry) == both.effects.end())
-        both.effects.push_back(entry);
-    for (int index : other.released)
-      if (std::find(both.released.begin(), both.released.end(), index) == both.released.end())
-        both.released.push_back(index);
+    for (const CatalogueEntry* one : other.effects)
+      if (!has(*one)) both.effects.push_back(one);
+    for (const int one : other.released)
+      if (!releases(one)) both.released.push_back(one);
     return both;
   }
 
@@ -113,10 +113,16 @@ struct Explanation {
 
   /// Whether its effects have details that are not free.
   bool can_be_refined() const {
-    for (const CatalogueEntry* entry : effects)
-      for (const Parameter& parameter : entry->info.parameters)
-        if (parameter.refines && !refined) return true;
-    return false;
+    return !refined && std::any_of(effects.begin(), effects.end(), [](const CatalogueEntry* entry) {
+      const auto& all = entry->info.parameters;
+      return std::any_of(all.begin(), all.end(), [](const Parameter& one) { return one.refines; });
+    });
+  }
+
+private:
+  template <class Cause>
+  static bool is_in(const std::vector<Cause>& all, const Cause& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
   }
 };
 
@@ -129,19 +135,19 @@ inline void stay_within_effect(const Model& model, const Catalogue& catalogue,
   for (const Parameter& parameter : entry->info.parameters) {
     if (parameter.name != constant.fields.front()) continue;
     const double value = model.get(constant.block + "." + parameter.name);
-    if (constant.is_place) {
-      coordinate.lower = std::max(coordinate.lower, std::min(parameter.lower - value, 0.0));
-      coordinate.upper = std::min(coordinate.upper, std::max(parameter.upper - value, 0.0));
-      continue;
-    }
-    const auto factor = [&](double bound, double otherwise) {
+    // The coordinates at which the constant is on a bound; where it never is, that side stays as it is.
+    const auto at = [&](double bound, double otherwise) {
+      if (constant.is_place) return bound - value;
       return bound / value > 0.0 ? std::log(bound / value) : otherwise;
     };
-    const double one = factor(parameter.lower, coordinate.lower),
-                 other = factor(parameter.upper, coordinate.upper);
-    if (value > 0.0) coordinate.lower = std::max(coordinate.lower, std::min(one, 0.0));
-    if (value > 0.0) coordinate.upper = std::min(coordinate.upper, std::max(other, 0.0));
-    if (value < 0.0) coordinate.upper = std::min(coordinate.upper, std::max(one, 0.0));
+    const double at_lower = at(parameter.lower, coordinate.lower),
+                 at_upper = at(parameter.upper, coordinate.upper);
+    if (constant.is_place || value > 0.0) {
+      coordinate.lower = std::max(coordinate.lower, std::min(at_lower, 0.0));
+      coordinate.upper = std::min(coordinate.upper, std::max(at_upper, 0.0));
+    } else if (value < 0.0) {
+      coordinate.upper = std::min(coordinate.upper, std::max(at_lower, 0.0));
+    }
   }
 }
 
@@ -169,23 +175,20 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
   std::vector<Coordinate> list;
   int index = 0;
   for (const CalibratedConstant& constant : model.calibrated()) {
-    const bool free = std::find(explanation.released.begin(), explanation.released.end(), index) !=
-                      explanation.released.end();
+    const bool free = explanation.releases(index);
     const double sd = model.uncertainty_of(constant);
     const double slack = constant.has_slack ? known_constants.within * sd : 0.0,
                  down = explanation.size() > 0 ? farthest_down(constant) : slack,
                  up = explanation.size() > 0 ? farthest(constant) : slack;
-    list.push_back({plant::calibration_id(constant.id),
-                    constant.is_place ? "rad" : "1",
-                    -down,
-                    up,
-                    0.0,
-                    {},
-                    !constant.is_place,
-                    {}});
-    if (!free) list.back().prior.sd = sd;
-    if (!free && !constant.has_slack) list.back().lower = list.back().upper = 0.0;
-    stay_within_effect(model, catalogue, constant, list.back());
+    Coordinate& one = list.emplace_back();
+    one.name = plant::calibration_id(constant.id);
+    one.unit = constant.is_place ? "rad" : "1";
+    one.lower = -down;
+    one.upper = up;
+    one.logarithmic = !constant.is_place;
+    if (!free) one.prior.sd = sd;
+    if (!free && !constant.has_slack) one.lower = one.upper = 0.0;
+    stay_within_effect(model, catalogue, constant, one);
     ++index;
   }
   for (const CatalogueEntry* entry : explanation.effects)
@@ -197,16 +200,12 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
       one.lower = one.coordinate_of(parameter.lower);
       one.upper = one.coordinate_of(parameter.upper);
       one.start = one.coordinate_of(parameter.starts.front());
-      if (parameter.given_by_data) {
-        one.still = true;
-        one.lower = one.upper = one.start;
-      } else if (parameter.refines && !explanation.refined && !model.own) {
-        one.still = true;
-        one.lower = one.upper = one.start =
-            one.coordinate_of(parameter.standard.value_or(parameter.starts.front()));
-      } else if (parameter.standard) {
-        one.standard = one.coordinate_of(*parameter.standard);
-      }
+      const bool is_detail = parameter.refines && !explanation.refined && !model.own;
+      one.still = parameter.given_by_data || is_detail;
+      const double standard = one.coordinate_of(parameter.standard.value_or(parameter.starts.front()));
+      if (is_detail && !parameter.given_by_data) one.start = standard;
+      if (one.still) one.lower = one.upper = one.start;
+      else if (parameter.standard) one.standard = standard;
       one.two_families = parameter.two_families && !one.still;
       assert(one.lower <= one.upper && one.start >= one.lower && one.start <= one.upper);
     }

@@ -188,25 +188,21 @@ private:
   /// Compares the readings of a segment with what was measured.
   void take(const std::vector<Signal>& signals, const Segment& segment, const Readings& readings,
             const Directions& directions, const std::vector<int>& columns, Residuals& residuals) const {
-    const Inputs& inputs = *segment.inputs;
+    std::array<int, signal_count> places{};
+    for (std::size_t k = 0; k < signals.size(); ++k)
+      places[static_cast<std::size_t>(signals[k])] = static_cast<int>(k);
     const auto column = [&](int d) { return columns[static_cast<std::size_t>(directions.first + d)]; };
     int count = directions.count;  // a segment may have fewer starts than others
     while (count > 0 && column(count - 1) >= residuals.jacobian.cols()) --count;
-    Eigen::Index filled = 0;
-    for (Eigen::Index row = segment.begin; row < segment.end; ++row)
-      for (std::size_t k = 0; k < signals.size(); ++k) {
-        const Signal signal = signals[k];
-        if (!inputs.judged(signal)) continue;
-        const double measured = inputs.of(signal)[row];
-        if (!std::isfinite(measured)) continue;
-        const double weight = weight_of(inputs, signal, row);
-        const int place = static_cast<int>(k);
-        residuals.value[filled] = bounded((readings.value(row, place) - measured) * weight);
-        const double* const slopes = readings.slopes(row, place);
-        for (int d = 0; d < count; ++d) residuals.jacobian(filled, column(d)) = bounded(slopes[d] * weight);
-        ++filled;
-      }
-    assert(filled == residuals.value.size());
+    for (std::size_t i = 0; i < residuals.row.size(); ++i) {
+      const Signal signal = residuals.signal[i];
+      const Eigen::Index row = residuals.row[i], at = static_cast<Eigen::Index>(i);
+      const int place = places[static_cast<std::size_t>(signal)];
+      const double weight = weight_of(*segment.inputs, signal, row);
+      residuals.value[at] = bounded((readings.value(row, place) - segment.inputs->of(signal)[row]) * weight);
+      const double* const slopes = readings.slopes(row, place);
+      for (int d = 0; d < count; ++d) residuals.jacobian(at, column(d)) = bounded(slopes[d] * weight);
+    }
   }
 
   /// A simulation that left the number range counts as very bad, not as undefined.

@@ -78,10 +78,7 @@ public:
     double damping = 1e-4;
     bool seen = false;  // the view is of `best`
     for (best.iterations = 0; best.iterations < options.iterations; ++best.iterations) {
-      if (!seen) {
-        linearise(best.point, best.starts, view_);
-        kept_.swap(view_.residuals);
-      }
+      if (!seen) look_at(best);
       seen = false;
       best.cost = view_.cost;
       best.chi2 = view_.chi2;
@@ -132,11 +129,10 @@ public:
       const Eigen::Index count = static_cast<Eigen::Index>(list_.size());
       pulls_.clear();
       wants_pulls_ = true;
-      linearise(best.point, best.starts, view_);
-      kept_.swap(view_.residuals);
+      look_at(best);
+      wants_pulls_ = false;
       best.cost = view_.cost;
       best.chi2 = view_.chi2;
-      wants_pulls_ = false;
       best.information = view_.information;
       best.pulls.resize(count, static_cast<Eigen::Index>(pulls_.size()));
       for (std::size_t k = 0; k < pulls_.size(); ++k)
@@ -146,12 +142,11 @@ public:
     }
     for (Eigen::Index i = 0; i < best.point.size(); ++i) {
       const Coordinate& one = list_[static_cast<std::size_t>(i)];
-      const double margin = 1e-3 * (one.upper - one.lower);
-      best.at_bound.push_back(best.point[i] <= one.lower + std::min(margin, 1e-9) ||
-                              best.point[i] >= one.upper - std::min(margin, 1e-9));
+      const double margin = std::min(1e-3 * (one.upper - one.lower), 1e-9);
+      best.at_bound.push_back(best.point[i] <= one.lower + margin || best.point[i] >= one.upper - margin);
     }
     best.samples = view_.samples;
-    for (std::size_t i = 0; i < signal_count; ++i) best.sums.set(i, kept_[i], 1.0);
+    for (std::size_t i = 0; i < signal_count; ++i) best.sums.set(i, kept_[i]);
     return best;
   }
 
@@ -167,7 +162,7 @@ public:
     here.point = at;
     here.starts = starts != nullptr ? *starts : problem_.measured_starts();
     linearise(at, here.starts, view_);
-    return promised_by_a_step(here);
+    return promised_cost(stepped(here, 1e-3).point - at);
   }
 
 private:
@@ -219,9 +214,10 @@ private:
     return view_.projected + 2.0 * view_.gradient.dot(change) + quadratic_form(view_.information, change);
   }
 
-  /// Its promise for one step of all coordinates from there.
-  double promised_by_a_step(const FitResult& here) const {
-    return promised_cost(stepped(here, 1e-3).point - here.point);
+  /// Makes `view_` that of a fit's point, and keeps its residuals.
+  void look_at(const FitResult& here) {
+    linearise(here.point, here.starts, view_);
+    kept_.swap(view_.residuals);
   }
 
   /// Looks at a point. Ends early as soon as data and starts cost more than the limit: then the view is of no use.
@@ -343,25 +339,18 @@ private:
       }
       const Eigen::VectorXd solved = SymmetricSystem(std::move(matrix)).solve(std::move(right));
       std::vector<Eigen::Index> inside;
-      bool clipped = false;
+      Eigen::VectorXd bounded(m);
       for (Eigen::Index a = 0; a < m; ++a) {
-        const Coordinate& one = list_[static_cast<std::size_t>(free[a])];
+        const Eigen::Index i = free[a];
+        const Coordinate& one = list_[static_cast<std::size_t>(i)];
         const double step = std::isfinite(solved[a]) ? solved[a] / scale[a] : 0.0;
-        const double target = from.point[free[a]] + step;
-        if (target < one.lower || target > one.upper) {
-          change[free[a]] = std::clamp(target, one.lower, one.upper) - from.point[free[a]];
-          clipped = true;
-        } else {
-          inside.push_back(free[a]);
-        }
+        const double target = from.point[i] + step;
+        bounded[a] = std::clamp(target, one.lower, one.upper) - from.point[i];
+        if (target < one.lower || target > one.upper) change[i] = bounded[a];
+        else inside.push_back(i);
       }
-      if (!clipped || round == 3) {
-        for (Eigen::Index a = 0; a < m; ++a) {
-          const Coordinate& one = list_[static_cast<std::size_t>(free[a])];
-          const double step = std::isfinite(solved[a]) ? solved[a] / scale[a] : 0.0;
-          change[free[a]] =
-              std::clamp(from.point[free[a]] + step, one.lower, one.upper) - from.point[free[a]];
-        }
+      if (inside.size() == free.size() || round == 3) {
+        for (Eigen::Index a = 0; a < m; ++a) change[free[a]] = bounded[a];
         break;
       }
       free = inside;

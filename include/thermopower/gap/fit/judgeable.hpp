@@ -3,13 +3,20 @@
 #pragma once
 
 #include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/fit/explanation.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 #include <thermopower/plant/catalogue.hpp>
 #include <thermopower/plant/samples.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
 #include <variant>
 #include <vector>
+
+/// @file judgeable.hpp
+/// The single causes that model and recordings allow to be judged: a search begins with them.
 
 namespace thermopower::gap::engine {
 
@@ -34,79 +41,81 @@ inline bool shows_inertia(const Model& model, const Inputs& inputs) {
          settled * model.axis->inertia_kgm2;
 }
 
+/// Whether the model and one recording have what an effect needs.
+inline bool is_met(Need need, const CatalogueEntry& entry, const Model& model, const Inputs& inputs) {
+  const auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current);
+  switch (need) {
+    case Need::current_A:
+      return inputs.judged(Signal::current_A);
+    case Need::motor_C:
+      return entry.hooks.any_axis() ? inputs.covariate_motor_C.size() > 0 : inputs.judged(Signal::motor_C);
+    case Need::power_param:
+      return inputs.power_param.size() > 0;
+    case Need::airspeed_mps:
+      return inputs.airspeed_mps.size() > 0;
+    case Need::neighbour_C:
+      return inputs.neighbour_C.size() > 0;
+    case Need::rate_dps:
+      return entry.hooks.any_axis() ? inputs.judged(Signal::rate_dps) : inputs.covariate_rate_dps.size() > 0;
+    case Need::angle_deg:
+      return inputs.judged(Signal::angle_deg);
+    case Need::supply_not_logged:
+      return inputs.supply_V.size() == 0;
+    case Need::thermal_model:
+      return model.has_thermal() && inputs.judged(Signal::motor_C);
+    case Need::current_model:
+      return model.has_current();
+    case Need::axis_model:
+      return model.has_axis() && inputs.axis();
+    case Need::two_nodes:
+      return model.effects.count("second_thermal_mass") > 0;
+    case Need::thesis_thermal:
+      return std::holds_alternative<ThesisThermalModel>(model.thermal);
+    case Need::open_loop:
+      return inputs.axis() && !inputs.closed_loop;
+    case Need::closed_loop:
+      return inputs.axis() && inputs.closed_loop;
+    case Need::shown_inertia:
+      return shows_inertia(model, inputs);
+    case Need::ohmic_without_tempco:
+      return ohmic != nullptr && ohmic->tempco_per_K == 0.0;
+  }
+  return true;
+}
+
 /// Whether model and recordings have what an effect needs.
 inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
                           const std::vector<Inputs>& recordings) {
-  if (model.own) return model.effects.count(entry.info.id) == 0;
-  bool bench = false, axis = false;
-  for (const Inputs& inputs : recordings) bench = bench || inputs.bench(), axis = axis || inputs.axis();
-  if (!(entry.hooks.any_bench() && bench) && !(entry.hooks.any_axis() && axis)) return false;
   if (model.effects.count(entry.info.id) > 0) return false;
-  if (entry.info.curve && !(entry.info.curve->size > 0.0)) return false;
-  for (const Need need : entry.info.needs) {
-    bool met = false;
-    for (const Inputs& inputs : recordings) {
-      const auto judged = [&](Signal signal) { return inputs.judged(signal); };
-      const auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current);
-      bool here = true;
-      switch (need) {
-        case Need::current_A:
-          here = judged(Signal::current_A);
-          break;
-        case Need::motor_C:
-          here = entry.hooks.any_axis() ? inputs.covariate_motor_C.size() > 0 : judged(Signal::motor_C);
-          break;
-        case Need::power_param:
-          here = inputs.power_param.size() > 0;
-          break;
-        case Need::airspeed_mps:
-          here = inputs.airspeed_mps.size() > 0;
-          break;
-        case Need::neighbour_C:
-          here = inputs.neighbour_C.size() > 0;
-          break;
-        case Need::rate_dps:
-          here = entry.hooks.any_axis() ? judged(Signal::rate_dps) : inputs.covariate_rate_dps.size() > 0;
-          break;
-        case Need::angle_deg:
-          here = judged(Signal::angle_deg);
-          break;
-        case Need::supply_not_logged:
-          here = inputs.supply_V.size() == 0;
-          break;
-        case Need::thermal_model:
-          here = model.has_thermal() && judged(Signal::motor_C);
-          break;
-        case Need::current_model:
-          here = model.has_current();
-          break;
-        case Need::axis_model:
-          here = model.has_axis() && axis;
-          break;
-        case Need::two_nodes:
-          here = model.effects.count("second_thermal_mass") > 0;
-          break;
-        case Need::thesis_thermal:
-          here = std::holds_alternative<ThesisThermalModel>(model.thermal);
-          break;
-        case Need::open_loop:
-          here = inputs.axis() && !inputs.closed_loop;
-          break;
-        case Need::closed_loop:
-          here = inputs.axis() && inputs.closed_loop;
-          break;
-        case Need::shown_inertia:
-          here = shows_inertia(model, inputs);
-          break;
-        case Need::ohmic_without_tempco:
-          here = ohmic != nullptr && ohmic->tempco_per_K == 0.0;
-          break;
-      }
-      met = met || here;
-    }
-    if (!met) return false;
-  }
-  return true;
+  if (model.own) return true;
+  const auto any = [&](auto&& has) { return std::any_of(recordings.begin(), recordings.end(), has); };
+  const auto acts = [&](const Inputs& one) {
+    return (entry.hooks.any_bench() && one.bench()) || (entry.hooks.any_axis() && one.axis());
+  };
+  if (!any(acts) || (entry.info.curve && !(entry.info.curve->size > 0.0))) return false;
+  return std::all_of(entry.info.needs.begin(), entry.info.needs.end(), [&](Need need) {
+    return any([&](const Inputs& one) { return is_met(need, entry, model, one); });
+  });
+}
+
+/// Every single cause that model and recordings allow to be judged: the catalogue's effects, then the constants that may be
+/// causes.
+/// @param without  ids that are left out
+inline std::vector<Explanation> single_causes(const Model& model, const Catalogue& catalogue,
+                                              const std::vector<std::string>& without,
+                                              const std::vector<Inputs>& recordings) {
+  std::vector<Explanation> list;
+  const auto removed = [&](const std::string& id) {
+    return std::find(without.begin(), without.end(), id) != without.end();
+  };
+  for (const CatalogueEntry& entry : catalogue.entries())
+    if (!removed(entry.info.id) && can_be_judged(entry, model, recordings)) list.push_back({{&entry}, {}});
+  const std::vector<CalibratedConstant> constants = model.calibrated();
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    if (constants[i].may_be_cause && !removed(plant::calibration_id(constants[i].id)) &&
+        can_be_judged(constants[i], model, recordings))
+      list.push_back({{}, {static_cast<int>(i)}});
+  return list;
 }
 
 }  // namespace thermopower::gap::engine

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -30,25 +31,11 @@ struct SignalSums {
   }
 
   /// Whether anything was summed.
-  bool any() const {
-    for (double count : samples)
-      if (count > 0.0) return true;
-    return false;
-  }
-
+  bool any() const { return count() > 0.0; }
   /// How many were summed, of all signals.
-  double count() const {
-    double sum = 0.0;
-    for (double of_signal : samples) sum += of_signal;
-    return sum;
-  }
-
+  double count() const { return std::accumulate(samples.begin(), samples.end(), 0.0); }
   /// Sum of the squares of all signals.
-  double total() const {
-    double sum = 0.0;
-    for (double of_signal : squares) sum += of_signal;
-    return sum;
-  }
+  double total() const { return std::accumulate(squares.begin(), squares.end(), 0.0); }
 
   /// Whether no signal's mean square is above this.
   bool within(double mean_square) const {
@@ -65,7 +52,7 @@ struct SignalSums {
   }
 
   /// Sets a signal's sums. @param unit  residuals are divided by it, > 0
-  void set(std::size_t signal, const std::vector<double>& residuals, double unit) {
+  void set(std::size_t signal, const std::vector<double>& residuals, double unit = 1.0) {
     assert(signal < signal_count && !(unit <= 0.0));
     squares[signal] = samples[signal] = 0.0;
     block_squares[signal].fill(0.0);

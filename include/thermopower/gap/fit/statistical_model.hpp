@@ -58,18 +58,10 @@ struct Prior {
   double sd = 0.0;  ///< scale, in the coordinate; 0: nothing is known, and nothing is paid
 
   /// Twice the negative logarithm of its density, 0 at the centre.
-  double cost(double at) const {
-    if (!(sd > 0.0)) return 0.0;
-    const double degrees = known_constants.degrees_of_freedom;
-    return (degrees + 1.0) * std::log1p(at * at / (degrees * sd * sd));
-  }
+  double cost(double at) const { return cost(at, known_constants.degrees_of_freedom); }
 
   /// The price of having moved where explanations are compared: as `cost`, with the heavier tail.
-  double price(double at) const {
-    if (!(sd > 0.0)) return 0.0;
-    const double degrees = known_constants.degrees_of_freedom_of_price;
-    return (degrees + 1.0) * std::log1p(at * at / (degrees * sd * sd));
-  }
+  double price(double at) const { return cost(at, known_constants.degrees_of_freedom_of_price); }
 
   /// The weight w for which w at^2 / 2 has the gradient of half the cost. It is the inverse variance of a normal
   /// distribution with the same pull.
@@ -77,6 +69,11 @@ struct Prior {
     if (!(sd > 0.0)) return 0.0;
     const double degrees = known_constants.degrees_of_freedom;
     return (degrees + 1.0) / (degrees * sd * sd + at * at);
+  }
+
+private:
+  double cost(double at, double degrees) const {
+    return sd > 0.0 ? (degrees + 1.0) * std::log1p(at * at / (degrees * sd * sd)) : 0.0;
   }
 };
 

@@ -68,34 +68,35 @@ public:
           {begin, static_cast<Eigen::Index>(rows_.size()), span.label, span.goes_on, span.drawn_Ah});
     }
     if (10 * rows_.size() > 8 * static_cast<std::size_t>(full_.rows())) return full_;
-    const Eigen::Index count = static_cast<Eigen::Index>(rows_.size());
+    const auto count = static_cast<Eigen::Index>(rows_.size());
     thin.t_s.resize(count);
     thin.repeats.setOnes(count);
     for (Eigen::Index i = 0; i < count; ++i) thin.t_s[i] = rows_[static_cast<std::size_t>(i)].t_s;
-    gather(full_.power_param, thin.power_param, false);
-    gather(full_.supply_V, thin.supply_V, false);
-    gather(full_.ambient_C, thin.ambient_C, false);
-    gather(full_.airspeed_mps, thin.airspeed_mps, false);
-    gather(full_.neighbour_C, thin.neighbour_C, false);
-    gather(full_.covariate_rate_dps, thin.covariate_rate_dps, true);
-    gather(full_.held_motor_C, thin.held_motor_C, false);
-    gather(full_.drive_A, thin.drive_A, true);  // heat goes with the square
-    gather(full_.held_current_A, thin.held_current_A, true);
-    gather(full_.heat_W, thin.heat_W, false);
+    for (const auto input :
+         {&Inputs::power_param, &Inputs::supply_V, &Inputs::ambient_C, &Inputs::airspeed_mps,
+          &Inputs::neighbour_C, &Inputs::held_motor_C, &Inputs::heat_W})
+      gather(full_.*input, thin.*input, false);
+    for (const auto input : {&Inputs::covariate_rate_dps, &Inputs::drive_A, &Inputs::held_current_A})
+      gather(full_.*input, thin.*input, true);  // heat goes with the square
     thin.command_noise *=
         std::sqrt(static_cast<double>(count) / static_cast<double>(full_.rows()));  // of means
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (std::isfinite(rows_[i].rate_dps))
         thin.covariate_rate_dps[static_cast<Eigen::Index>(i)] = rows_[i].rate_dps;
-    observe(Signal::motor_C, thin);
-    observe(Signal::current_A, thin);
-    const Simulated whole = simulated(full_), shortened = simulated(thin);
+    std::vector<Signal> judged;
     for (const Signal signal : {Signal::motor_C, Signal::current_A})
-      if (full_.judged(signal))
-        thin.sample_noise[static_cast<std::size_t>(signal)] =
-            noise_of_samples(signal, whole[static_cast<std::size_t>(signal)]);
-    make_up_for(Signal::motor_C, whole, shortened, thin);
-    make_up_for(Signal::current_A, whole, shortened, thin);
+      if (full_.judged(signal)) judged.push_back(signal);
+    for (const Signal signal : judged) observe(signal, thin);
+    const Simulated whole = simulated(full_), shortened = simulated(thin);
+    for (const Signal signal : judged) {
+      const auto at = static_cast<std::size_t>(signal);
+      thin.sample_noise[at] = noise_of_samples(signal, whole[at]);
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        const double lost = shortened[at][row] - mean_of(rows_[i], signal, whole[at]).value;
+        if (std::isfinite(lost)) thin.measured[at][row] += lost;
+      }
+    }
     return thin;
   }
 
@@ -269,7 +270,6 @@ private:
   }
 
   void observe(Signal signal, Inputs& thin) const {
-    if (!full_.judged(signal)) return;
     // A sensor slower than the rows is in some of them only.
     const double usual =
         static_cast<double>(full_.of(signal).array().isFinite().count()) / static_cast<double>(full_.rows());
@@ -345,16 +345,6 @@ private:
         gaps.push_back(row == run.begin || heat_level(row) != heat_level(row - 1));
       }
     return noise_sd(errors, gaps, quantum_of(measured));
-  }
-
-  void make_up_for(Signal signal, const Simulated& whole, const Simulated& shortened, Inputs& thin) const {
-    if (!full_.judged(signal)) return;
-    const auto at = static_cast<std::size_t>(signal);
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const Eigen::Index row = static_cast<Eigen::Index>(i);
-      const double lost = shortened[at][row] - mean_of(rows_[i], signal, whole[at]).value;
-      if (std::isfinite(lost)) thin.measured[at][row] += lost;
-    }
   }
 
   static constexpr ThinningThresholds limit_{};

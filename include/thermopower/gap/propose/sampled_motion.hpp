@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/propose/low_pass.hpp>
 #include <thermopower/gap/propose/thresholds.hpp>
@@ -145,9 +146,7 @@ private:
         if (std::isfinite(samples[i])) stamps.push_back(inputs.t_s[i]);
       for (std::size_t i = 0; i + 1 < stamps.size(); ++i) steps.push_back(stamps[i + 1] - stamps[i]);
       if (steps.size() < 2) continue;
-      const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-      std::nth_element(steps.begin(), middle, steps.end());
-      const double interval_s = *middle;
+      const double interval_s = median_of(steps);
       assert(interval_s > 0.0);
       for (std::size_t i = 0, first = 0; i < stamps.size(); ++i) {
         const bool last = i + 1 == stamps.size();
