@@ -50,8 +50,8 @@ public:
       return std::move(result_);
     }
     stage("finding where simulation and recordings part");
-    Localisation found = localise(model_, train_recordings_, {}, catalogue_);
-    if (!model_.own) add_occurrences(model_, train_recordings_, held_out_recordings_, {}, catalogue_, found);
+    Localisation found = localise(model_, train_recordings_, catalogue_);
+    if (!model_.own) add_occurrences(model_, train_recordings_, held_out_recordings_, catalogue_, found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("weighing causes");
@@ -354,7 +354,7 @@ private:
     if (decided.verdict == Verdict::partial || decided.reason == Reason::several_close_a_part)
       result_.remaining =
           remaining(result_, model_.own ? Localisation()
-                                        : localise(result_.augmented, train_recordings_, {}, catalogue_));
+                                        : localise(result_.augmented, train_recordings_, catalogue_));
     result_.next_experiment = next_experiment(result_, candidates, choice, model_, catalogue_);
     result_.predictions =
         predictions_of(model_, result_.augmented, full, held_out_inputs_, held_out_rows_, catalogue_);

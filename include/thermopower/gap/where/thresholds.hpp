@@ -12,6 +12,7 @@ namespace thermopower::gap::engine {
 /// Held by tests/gap/where/localisation_test.cpp, and judged on seed 20270221 in docs/reference/gap-benchmark.md.
 struct LocalisationThresholds {
   // When there is something to place.
+  double slack = 0.04;           ///< how far constants may be off without that being a gap, as a fraction
   Eigen::Index least_rows = 30;  ///< rows; fewer cannot be cross-validated on eight stretches
   double nothing_seen =
       1.15;  ///< a fit of the constants alone that leaves no more on all rows needs no freedom,
@@ -50,5 +51,8 @@ struct LocalisationThresholds {
   double regime_half = 0.5;              ///< of the largest bin: its neighbours above it belong to the regime
   Eigen::Index most_starts = 6;          ///< runs whose starts are freed one by one
 };
+
+/// The thresholds of every localisation.
+inline constexpr LocalisationThresholds where_limits;
 
 }  // namespace thermopower::gap::engine
