@@ -139,8 +139,8 @@ TEST_CASE("recordings without the needed columns, or too short, place nothing") 
   r.set("motor_C", Eigen::VectorXd::Constant(100, 20.0));
   CHECK(localise(test::bench_model(), {r}, standard_catalogue()).where.empty());
   CHECK(localise(test::axis_model(), {r}, standard_catalogue()).where.empty());
-  CHECK(localise(test::bench_model(), {test::bench_recording({}, 20, 1)}, standard_catalogue())
-            .where.empty());
+  CHECK(
+      localise(test::bench_model(), {test::bench_recording({}, 20, 1)}, standard_catalogue()).where.empty());
 }
 
 TEST_CASE(
