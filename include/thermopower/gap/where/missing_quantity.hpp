@@ -119,15 +119,12 @@ inline int picture_half_width(const plant::Balance& balance) {
   const Eigen::VectorXd& flow = balance.flow_held.size() > 0 ? balance.flow_held : balance.flow_sampled;
   const double typical = flow.norm() / std::sqrt(static_cast<double>(flow.size()));
   const double state = state_noise(balance) * capacity_of(balance).mean();
-  int half = where_limits.picture_first;
-  while (half < where_limits.picture_last) {
+  for (int half = where_limits.picture_first;; half *= 2) {
     const TestFunctions functions(balance.rows, balance.measured, half, where_limits.picture_samples);
     if (functions.size() < where_limits.picture_least ||
         state * functions.derivative().gain() < where_limits.picture_noise * typical)
-      break;
-    half *= 2;
+      return half;
   }
-  return half;
 }
 
 /// The missing quantity of a balance, averaged over stretches long enough to see it.

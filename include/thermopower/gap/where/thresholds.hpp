@@ -44,7 +44,6 @@ struct LocalisationThresholds {
   Eigen::Index picture_samples = 4000;   ///< of a missing quantity
   Eigen::Index picture_least = 60;       ///< samples that a picture must keep when noise asks for wider ones
   int picture_first = 4;                 ///< rows: the narrowest half width tried for it
-  int picture_last = 400;                ///< rows: the widest
   double picture_noise = 0.04;           ///< noise of a sample of it, as a share of the held flow's RMS
   int picture_bins = 28;                 ///< bins of a picture
   int regime_bins = 10;                  ///< bins among which the regime is found
