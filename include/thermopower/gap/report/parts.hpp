@@ -238,7 +238,8 @@ struct ErrorsOfAll {
   std::vector<Errors> rivals;
 };
 
-/// Curves of a signal over one recording. @param at  of the errors' rows the first one of that recording, and of the next one after
+/// Curves of a signal over one recording.
+/// @param at  of the errors' rows the first one of that recording; afterwards the first one of the next
 inline SignalSeries series_of(const GapScore& gap, Signal signal, const Inputs& recording,
                               const ErrorsOfAll& errors, const std::vector<Segment>& segments,
                               const std::vector<Rival>& rivals, std::size_t& at) {

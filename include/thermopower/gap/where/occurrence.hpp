@@ -21,8 +21,9 @@
 
 namespace thermopower::gap::engine {
 
-/// Thresholds of the question in which runs, and from when on, a fault shows. A balance holds where its constants leave no more
-/// than LocalisationThresholds::gap_seen. Held by tests/gap/where/occurrence_test.cpp.
+/// Thresholds of the question in which runs, and from when on, a fault shows. A balance holds where its
+/// constants leave no more than LocalisationThresholds::gap_seen.
+/// Held by tests/gap/where/occurrence_test.cpp.
 struct OccurrenceThresholds {
   Eigen::Index least_rows = 150;   ///< of a run that is asked about: eight stretches of some twenty rows
   Eigen::Index most_rows = 20000;  ///< of a run: the first of them; more say no more about whether

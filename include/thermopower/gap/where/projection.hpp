@@ -50,7 +50,8 @@ inline Eigen::VectorXd needed_by(const plant::Balance& balance) {
                                           : balance.measured;
 }
 
-/// The missing quantity of a balance as test functions see it. @param held  integrals of the flow that holds over intervals
+/// The missing quantity of a balance as test functions see it.
+/// @param held  integrals of the flow that holds over intervals
 inline Eigen::VectorXd missing_of(const plant::Balance& balance, const TestFunctions& functions,
                                   const RowIntegrals& held) {
   const RowIntegrals &integral = functions.integral(), &derivative = functions.derivative();
@@ -207,7 +208,8 @@ private:
     return carried(Eigen::VectorXd::Zero(values.size()), gain);
   }
 
-  /// A state that relaxes over each row's interval and gains something in it. @param start  read at the first row of each run
+  /// A state that relaxes over each row's interval and gains something in it.
+  /// @param start  read at the first row of each run
   Eigen::VectorXd carried(const Eigen::VectorXd& start, const Eigen::VectorXd& gain) const {
     assert(start.size() == kept_.size() && gain.size() == kept_.size());
     Eigen::VectorXd out = start;
