@@ -575,7 +575,7 @@ TEST_CASE("of a parameter that the data say nothing of, any value in its range i
     one.list[0].upper = 1.0;
     one.fit.at_bound = {false};
     one.fit.information(0, 0) = known;
-    const ParameterEstimate estimate = estimates(one, Model{}, Weight()).front();
+    const ParameterEstimate estimate = estimates(one, Model{}, covariance_of(one, Weight())).front();
     const Interval interval = estimate.ci95;
     CHECK(estimate.told == (known > 0.0));
     if (known > 0.0)

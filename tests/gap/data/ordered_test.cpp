@@ -7,7 +7,7 @@
 #include <thermopower/gap/data/extremes.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/data/sorted_from_below.hpp>
-#include <thermopower/gap/where/rows.hpp>
+#include <thermopower/gap/where/missing_quantity.hpp>
 
 #include <algorithm>
 #include <cmath>

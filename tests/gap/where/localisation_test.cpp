@@ -23,12 +23,12 @@ using Effects = std::map<std::string, EffectParameters>;
 Localisation bench(const test::BenchFault& fault, const Effects& baseline = {}) {
   Model model = test::bench_model();
   model.effects = baseline;
-  return localise(model, {test::bench_recording(fault, 1500, 3)}, {}, standard_catalogue());
+  return localise(model, {test::bench_recording(fault, 1500, 3)}, standard_catalogue());
 }
 Localisation axis(const test::AxisFault& fault, const Effects& baseline = {}) {
   Model model = test::axis_model();
   model.effects = baseline;
-  return localise(model, {test::axis_recording(fault, 4000, 3)}, {}, standard_catalogue());
+  return localise(model, {test::axis_recording(fault, 4000, 3)}, standard_catalogue());
 }
 
 void check_first(const Localisation& found, Signal signal, plant::Submodel submodel) {
@@ -100,7 +100,7 @@ TEST_CASE("an encoder that errs several times a turn is placed in the angle") {
     Eigen::VectorXd angle = recording.column("angle_deg");
     for (double& one : angle) one += 0.8 * std::sin(repeats * one / 57.29577951308232);
     recording.set("angle_deg", angle);
-    const Localisation found = localise(test::axis_model(), {recording}, {}, standard_catalogue());
+    const Localisation found = localise(test::axis_model(), {recording}, standard_catalogue());
     check_first(found, Signal::angle_deg, plant::Submodel::sensing_angle);
     CHECK(found.where.front().regime->variable == "angle_deg");
   }
@@ -137,10 +137,10 @@ TEST_CASE("recordings without the needed columns, or too short, place nothing") 
   Recording r;
   r.t_s = Eigen::VectorXd::LinSpaced(100, 0.0, 99.0);
   r.set("motor_C", Eigen::VectorXd::Constant(100, 20.0));
-  CHECK(localise(test::bench_model(), {r}, {}, standard_catalogue()).where.empty());
-  CHECK(localise(test::axis_model(), {r}, {}, standard_catalogue()).where.empty());
-  CHECK(localise(test::bench_model(), {test::bench_recording({}, 20, 1)}, {}, standard_catalogue())
-            .where.empty());
+  CHECK(localise(test::bench_model(), {r}, standard_catalogue()).where.empty());
+  CHECK(localise(test::axis_model(), {r}, standard_catalogue()).where.empty());
+  CHECK(
+      localise(test::bench_model(), {test::bench_recording({}, 20, 1)}, standard_catalogue()).where.empty());
 }
 
 TEST_CASE(

@@ -20,8 +20,8 @@ Recording named(Recording recording, const char* name) {
 Localisation found(const Model& model, const std::vector<Recording>& train,
                    const std::vector<Recording>& held_out) {
   const Catalogue none;
-  Localisation result = localise(model, train, {}, none);
-  add_occurrences(model, train, held_out, {}, none, result);
+  Localisation result = localise(model, train, none);
+  add_occurrences(model, train, held_out, none, result);
   return result;
 }
 

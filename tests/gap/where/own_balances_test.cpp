@@ -113,7 +113,7 @@ Localisation tank(const TankFault& fault, plant::BalanceForm form, double valve 
        plant::SignalName("level_m"),
        {},
        [&](const plant::ReadingOffsets&) { return level_balance(water, form, valve, when_asked); }}};
-  return localise_balances(sources, 1);
+  return localise_balances(sources);
 }
 
 }  // namespace
@@ -207,7 +207,7 @@ TEST_CASE(
            corrected.level_m.array() -= offsets[first];
            return level_balance(corrected, plant::BalanceForm::filtered, valve_m25_per_s);
          }}};
-    const Localisation found = localise_balances(sources, 1);
+    const Localisation found = localise_balances(sources);
     REQUIRE_FALSE(found.where.empty());
     CHECK(to_string(found.where.front().submodel) == (first_wrong ? "tank.gauge" : "tank.second_gauge"));
   }

@@ -146,7 +146,7 @@ TEST_CASE("the curve of an effect is what was put in, over the range of what is 
   fault.spring_Nm_per_rad = 0.01;
   const std::vector<Recording> faulty{test::axis_recording(fault, 4000, 3)};
   const Model model = test::axis_model();
-  Localisation found = localise(model, faulty, {}, standard_catalogue());
+  Localisation found = localise(model, faulty, standard_catalogue());
   REQUIRE_FALSE(found.quantities.empty());
   MissingQuantity& q = found.quantities.front();
   REQUIRE(q.variable == "angle_deg");

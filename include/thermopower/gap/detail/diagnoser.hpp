@@ -50,8 +50,8 @@ public:
       return std::move(result_);
     }
     stage("finding where simulation and recordings part");
-    Localisation found = localise(model_, train_recordings_, {}, catalogue_);
-    if (!model_.own) add_occurrences(model_, train_recordings_, held_out_recordings_, {}, catalogue_, found);
+    Localisation found = localise(model_, train_recordings_, catalogue_);
+    if (!model_.own) add_occurrences(model_, train_recordings_, held_out_recordings_, catalogue_, found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("weighing causes");
@@ -249,14 +249,8 @@ private:
     GapScore gap;
     gap.signal = plant::SignalName(voltage ? "voltage_V" : "drive_A");
     gap.unit = voltage ? "V" : "A";
-    gap.before = rms_of(before);
-    gap.recalibrated = rms_of(constants);
-    gap.after = rms_of(after);
     gap.noise_floor = effort_->effort_noise();
-    gap.shrunk_by = gap.before > 0.0 ? 1.0 - gap.after / gap.before : 0.0;
-    gap.ci95 = shrinkage_interval(before, after, options_.seed);
-    gap.beyond_constants = shrinkage_interval(constants, after, options_.seed);
-    gap.by_constants = shrinkage_interval(before, constants, options_.seed);
+    measure_gap(gap, before, constants, after, options_.seed);
     result_.gap.push_back(gap);
   }
 
@@ -351,9 +345,8 @@ private:
     if (decided.verdict != Verdict::ambiguous) result_.alternatives.clear();
     if (named) draw_what_is_missing();
     if (decided.verdict == Verdict::partial || decided.reason == Reason::several_close_a_part)
-      result_.remaining =
-          remaining(result_, model_.own ? Localisation()
-                                        : localise(result_.augmented, train_recordings_, {}, catalogue_));
+      result_.remaining = remaining(
+          result_, model_.own ? Localisation() : localise(result_.augmented, train_recordings_, catalogue_));
     result_.next_experiment = next_experiment(result_, candidates, choice, model_, catalogue_);
     result_.predictions =
         predictions_of(model_, result_.augmented, full, held_out_inputs_, held_out_rows_, catalogue_);

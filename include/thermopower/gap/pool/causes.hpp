@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/pool/log_result.hpp>
 #include <thermopower/gap/pool/mixed_effects.hpp>
 #include <thermopower/gap/pool/statistics.hpp>
 
@@ -12,8 +13,12 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+/// @file causes.hpp
+/// What the units of a fleet have in common: causes, effects too weak for one log, and what those make of constants.
 
 namespace thermopower::gap::pool {
 
@@ -84,7 +89,7 @@ inline CommonCauses common_causes(const std::vector<Probabilities>& units) {
 struct Gain {
   double train = 0.0;  ///< twice the log likelihood ratio of the training data, its parameters fitted there
   double held_out = 0.0;  ///< of held-out data, nothing fitted
-  int parameters = 1;     ///< that were fitted in each log
+  int parameters = 0;     ///< that were fitted in all logs
 };
 
 namespace detail {
@@ -107,15 +112,14 @@ struct WeakEffect {
 
 /// Looks for effects that help a little everywhere, among units whose own diagnosis names none.
 ///
-/// Named are explanations that help on held-out data over the units, at a family-wise error of `level` over all
+/// Named are explanations that help on held-out data over the units, at a family-wise error of 1 % over all
 /// explanations tried (Holm). That assumes nothing of noise or its correlation, only that units are independent. The one
 /// with the largest gain leads. Others that the units do not reject beyond doubt (paired over units, two-sided 5 %, as
 /// Vuong 1989 does over observations) are listed beside it.
 /// @param units  for each unit the explanations that were fitted and looked at on held-out data
 /// @return those that stand, the leading one first, then all others by p
-inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::string, Gain>>& units,
-                                            double level = 0.01) {
-  constexpr double doubt = 0.025;
+inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::string, Gain>>& units) {
+  constexpr double level = 0.01, doubt = 0.025;
   std::map<std::string, std::vector<double>> held_out, gains;
   for (const auto& unit : units)
     for (const auto& [name, gain] : unit) {
@@ -145,6 +149,83 @@ inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::stri
     if (!(signed_rank_p(difference) < doubt)) list.front().not_told_from.push_back(list[i].explanation);
   }
   return list;
+}
+
+/// By how much a constant is off in all units for want of an effect that all of them have and no unit's model.
+struct Shift {
+  double by = 0.0;        ///< with the effect less without it, in the coordinate; of the mean unit
+  double error = 0.0;     ///< variance of that
+  double variance = 0.0;  ///< of one unit's own shift around it: `error`, and what the units differ in
+};
+
+/// The shifts of constants, by the names of their coordinates.
+using CommonShift = std::map<std::string, Shift>;
+
+/// Where the fit of one log ended without an effect and with it.
+struct FittedBothWays {
+  const FittedExplanation* without;  ///< as a diagnosis of nothing missing has it
+  const FittedExplanation* with;     ///< of the same log
+};
+
+namespace detail {
+
+/// Mean over the logs of what the effect moves a coordinate by, and its variance; none where a fit lacks it.
+inline std::optional<Estimate> moved(const std::vector<FittedBothWays>& logs, const std::string& name) {
+  // A restricted fit is the more precise one, and the two differ by the wider one's extra knowledge. So the variance of the
+  // difference is that of the variances (Hausman 1978). Both are estimates, so that it may come out as nothing; a twentieth
+  // of the wider fit's is the least that is believed.
+  constexpr double least = 0.05;
+  const double count = static_cast<double>(logs.size());
+  double by = 0.0, variance = 0.0;
+  for (const FittedBothWays& log : logs) {
+    const std::optional<Estimate> one = log.without->estimate_of({name}),
+                                  other = log.with->estimate_of({name});
+    if (!one || !other) return std::nullopt;
+    const double wider = other->covariance(0, 0);
+    by += (other->at[0] - one->at[0]) / count;
+    variance += std::max(wider - one->covariance(0, 0), least * wider) / (count * count);
+  }
+  if (!std::isfinite(by) || !(variance > 0.0)) return std::nullopt;
+  return Estimate{Eigen::VectorXd::Constant(1, by), Eigen::MatrixXd::Constant(1, 1, variance)};
+}
+
+}  // namespace detail
+
+/// The shift of the units' constants by an effect that stands in the pool: mean and spread over the units. No single unit
+/// knows; what it gets from the others is the mean, and a wider error.
+/// @param units  of each one the logs, fitted both ways: the effect is the only difference
+/// @return shifts of the constants that all of these fits have; empty with fewer than four units
+inline CommonShift common_shift(const std::vector<std::vector<FittedBothWays>>& units) {
+  constexpr std::size_t fewest = 4;
+  CommonShift result;
+  if (units.size() < fewest || units.front().empty()) return result;
+  for (const std::string& name : units.front().front().without->names) {
+    if (!is_constant(name)) continue;
+    std::vector<Estimate> moved;
+    for (const std::vector<FittedBothWays>& unit : units)
+      if (const std::optional<Estimate> one = detail::moved(unit, name)) moved.push_back(*one);
+    if (moved.size() < units.size()) continue;
+    const MixedEffects fit = fit_mixed_effects(moved);
+    const double error = fit.mean_covariance(0, 0);
+    result[name] = {fit.mean[0], error, error + fit.between(0, 0)};
+  }
+  return result;
+}
+
+/// A shift if the units do not tell the effect from others. One of those might be the true one, so their largest difference
+/// in shift is an error of this one, too.
+inline CommonShift either(CommonShift leading, const std::vector<CommonShift>& others) {
+  for (auto& [name, shift] : leading) {
+    double most = 0.0;
+    for (const CommonShift& other : others) {
+      const auto found = other.find(name);
+      const double away = shift.by - (found == other.end() ? 0.0 : found->second.by);
+      most = std::max(most, away * away);
+    }
+    shift.error += most;
+    shift.variance += most;
+  }
+  return leading;
 }
 
 }  // namespace thermopower::gap::pool

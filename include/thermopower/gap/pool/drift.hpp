@@ -23,22 +23,19 @@ struct TimeSeries {
 
 /// How a unit's coordinate went.
 enum class DriftKind {
-  none,    ///< no more than its errors and the usual scatter between logs
   slope,   ///< steadily
   change,  ///< at once, some time between two logs
 };
 
 /// The drift's name, as reports spell it.
-inline const char* to_string(DriftKind kind) {
-  return kind == DriftKind::slope ? "slope" : kind == DriftKind::change ? "change" : "none";
-}
+inline const char* to_string(DriftKind kind) { return kind == DriftKind::slope ? "slope" : "change"; }
 
 /// The result for one series. Which kind, and since when, only means something where `p` is small.
 struct Drift {
-  double p = 1.0;                    ///< probability of as large a departure without any drift
-  DriftKind kind = DriftKind::none;  ///< the likelier of the two
-  double size = 0.0;                 ///< last fitted value less the first, in the coordinate
-  double per_day = 0.0;              ///< of a slope
+  double p = 1.0;                     ///< probability of as large a departure without any drift
+  DriftKind kind = DriftKind::slope;  ///< the likelier of the two
+  double size = 0.0;                  ///< last fitted value less the first, in the coordinate
+  double per_day = 0.0;               ///< of a slope
   double since = 0.0;  ///< a change lies after the log of this time, with 95 %; a slope's first log
   double until = 0.0;  ///< and before the log of this one; a slope's last log
 };

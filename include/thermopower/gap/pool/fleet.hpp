@@ -3,7 +3,6 @@
 #pragma once
 
 #include <thermopower/gap/pool/causes.hpp>
-#include <thermopower/gap/pool/common_shift.hpp>
 #include <thermopower/gap/pool/drift.hpp>
 #include <thermopower/gap/pool/log_result.hpp>
 #include <thermopower/gap/pool/odd_units.hpp>
@@ -18,22 +17,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace thermopower::gap::pool {
-
-/// The levels of a fleet's verdicts.
-struct FleetOptions {
-  double false_odd = 0.01;       ///< probability that a fleet of sound units has an odd one
-  double false_drift = 0.01;     ///< probability that a fleet without drift has one
-  double false_weak = 0.01;      ///< probability that a weak effect is named where there is none
-  double differs = 0.01;         ///< probability that alike units' parameter passes for one that differs
-  double family_share = 0.05;    ///< share of the units from which on a cause is a family's
-  std::size_t family_units = 4;  ///< and at least so many units
-  double misfit_matters =
-      1.25;  ///< factor on the RMSE from which on a worse fit makes a unit odd, as of a signal
-};
 
 /// Why a unit is odd.
 enum class Oddity {
@@ -79,7 +67,6 @@ struct Family {
   MixedEffects spread;        ///< of the units that are not odd; of size 0 where too few could be compared
   std::vector<bool> differs;  ///< by coordinate: the units differ in it beyond their errors
   std::vector<LogScatter> scatter;  ///< by coordinate: between the logs of one unit
-  double usual_misfit = 1.0;        ///< median reduced chi^2 of its units
 };
 
 /// A log that says nothing, and why.
@@ -106,8 +93,7 @@ namespace detail {
 /// One fleet under judgement.
 class FleetJudge {
 public:
-  FleetJudge(const std::vector<LogResult>& logs, const FleetOptions& options)
-      : logs_(logs), options_(options) {}
+  explicit FleetJudge(const std::vector<LogResult>& logs) : logs_(logs) {}
 
   FleetVerdict run() {
     gather();
@@ -118,12 +104,16 @@ public:
     take_weak_effect_out();
     result_.structure_differs = result_.families.size() > 1;
     for (const Family& one : result_.families)
-      for (const bool differs : one.differs) result_.parameters_differ = result_.parameters_differ || differs;
+      for (const bool differs : one.differs) result_.parameters_differ |= differs;
     return std::move(result_);
   }
 
 private:
   static constexpr const char* outside = "outside the catalogue";
+  static constexpr double false_odd = 0.01;    ///< probability that a fleet of sound units has an odd one
+  static constexpr double false_drift = 0.01;  ///< probability that a fleet without drift has one
+  static constexpr double misfit_matters =
+      1.25;  ///< factor on the RMSE from which on a worse fit makes a unit odd
 
   void gather() {
     std::map<std::string, std::size_t> known;
@@ -176,10 +166,7 @@ private:
     }
     double largest = -std::numeric_limits<double>::infinity();
     for (auto& [name, value] : all) {
-      for (const Probabilities& one : each) {
-        const auto found = one.find(name);
-        value += std::log(found == one.end() ? impossible : std::max(found->second, impossible));
-      }
+      for (Probabilities& one : each) value += std::log(std::max(one[name], impossible));
       largest = std::max(largest, value);
     }
     for (auto& [name, value] : all) value = std::exp(value - largest);
@@ -188,12 +175,12 @@ private:
   }
 
   void find_families() {
+    constexpr double family_share = 0.05, family_units = 4.0;  // from which on a cause is a family's
+    constexpr double half_a_unit = 0.5, sure = 0.5;
     std::vector<Probabilities> units;
     for (const UnitVerdict& one : result_.units) units.push_back(likely(one));
     const CommonCauses found = common_causes(units);
-    const double least = std::max(static_cast<double>(options_.family_units),
-                                  options_.family_share * static_cast<double>(units.size()));
-    constexpr double half_a_unit = 0.5;
+    const double least = std::max(family_units, family_share * static_cast<double>(units.size()));
     for (const Prevalence& one : found.common) {
       if (one.units >= half_a_unit) result_.causes.push_back(one);
       if (one.explanation == outside || !(one.units >= least - half_a_unit)) continue;
@@ -203,13 +190,11 @@ private:
     }
     for (std::size_t i = 0; i < result_.units.size(); ++i) {
       UnitVerdict& unit = result_.units[i];
-      const auto likeliest =
-          std::max_element(found.units[i].begin(), found.units[i].end(),
-                           [](const auto& one, const auto& other) { return one.second < other.second; });
-      unit.own_cause = likeliest->first;
-      unit.own_probability = likeliest->second;
+      std::tie(unit.own_cause, unit.own_probability) =
+          *std::max_element(found.units[i].begin(), found.units[i].end(),
+                            [](const auto& one, const auto& other) { return one.second < other.second; });
       for (std::size_t f = 0; f < result_.families.size(); ++f)
-        if (found.units[i].at(result_.families[f].cause) > 0.5) unit.family = static_cast<int>(f);
+        if (found.units[i].at(result_.families[f].cause) > sure) unit.family = static_cast<int>(f);
       unit.member = unit.family >= 0;
       if (!unit.member) unit.family = nearest_family(unit);
     }
@@ -234,25 +219,27 @@ private:
     return best;
   }
 
-  std::vector<std::size_t> held_against(std::size_t family) const {
-    std::vector<std::size_t> units;
-    for (std::size_t i = 0; i < result_.units.size(); ++i)
-      if (result_.units[i].family == static_cast<int>(family)) units.push_back(i);
+  /// The units that are compared with a family.
+  std::vector<UnitVerdict*> held_against(std::size_t family) {
+    std::vector<UnitVerdict*> units;
+    for (UnitVerdict& one : result_.units)
+      if (one.family == static_cast<int>(family)) units.push_back(&one);
     return units;
   }
 
   /// Coordinates that are free in most members' fits. One on a bound, or fixed, tells nothing.
-  void choose_coordinates(Family& family, const std::vector<std::size_t>& units) const {
+  void choose_coordinates(Family& family, const std::vector<UnitVerdict*>& units) const {
+    constexpr double mostly = 0.8;
     struct Seen {
       std::string name;
       bool is_logarithmic;
       double free, all;
     };
     std::vector<Seen> seen;
-    for (const std::size_t i : units)
-      for (const std::size_t log : result_.units[i].logs) {
+    for (const UnitVerdict* unit : units)
+      for (const std::size_t log : unit->logs) {
         const FittedExplanation* one = logs_[log].likeliest(family.cause);
-        if (!result_.units[i].member || one == nullptr || !one->is_usable()) continue;
+        if (!unit->member || one == nullptr || !one->is_usable()) continue;
         for (std::size_t c = 0; c < one->names.size(); ++c) {
           auto place = std::find_if(seen.begin(), seen.end(),
                                     [&](const Seen& each) { return each.name == one->names[c]; });
@@ -262,7 +249,6 @@ private:
           place->all += 1.0;
         }
       }
-    constexpr double mostly = 0.8;
     for (const Seen& one : seen)
       if (one.free >= mostly * one.all) {
         family.coordinates.push_back(one.name);
@@ -320,48 +306,53 @@ private:
     return result;
   }
 
+  /// Mean logarithm of the RMSE that a cause leaves of a unit's logs; none where nobody fitted it.
+  std::optional<double> misfit_of(const UnitVerdict& unit, const std::string& cause) const {
+    double sum = 0.0, count = 0.0;
+    for (const std::size_t log : unit.logs)
+      if (const FittedExplanation* one = logs_[log].likeliest(cause); one != nullptr && one->misfit > 0.0) {
+        sum += 0.5 * std::log(one->misfit);
+        count += 1.0;
+      }
+    if (count == 0.0) return std::nullopt;
+    return sum / count;
+  }
+
   void judge(std::size_t f) {
+    constexpr double alike_differ =
+        0.01;  // probability that alike units' parameter passes for one that differs
     Family& family = result_.families[f];
-    const std::vector<std::size_t> units = held_against(f);
+    const std::vector<UnitVerdict*> units = held_against(f);
     choose_coordinates(family, units);
     const auto k = static_cast<Eigen::Index>(family.coordinates.size());
     for (Eigen::Index c = 0; c < k; ++c) {
       std::vector<TimeSeries> all;
-      for (const std::size_t i : units) all.push_back(series_of(result_.units[i], family, c));
+      for (const UnitVerdict* unit : units) all.push_back(series_of(*unit, family, c));
       family.scatter.push_back(log_scatter(all));
     }
     // Both ways of being odd share what a false one may cost, and so do the families.
-    const double level = 0.5 * options_.false_odd * static_cast<double>(units.size()) /
+    const double level = 0.5 * false_odd * static_cast<double>(units.size()) /
                          static_cast<double>(std::max<std::size_t>(result_.units.size(), 1));
     std::vector<Estimate> estimates, misfits;
     std::vector<UnitVerdict*> compared, fitted;
     std::vector<double> usual;
-    for (const std::size_t i : units) {
-      UnitVerdict& unit = result_.units[i];
-      unit.estimate = together(unit, family);
-      if (unit.estimate) {
-        estimates.push_back(*unit.estimate);
-        compared.push_back(&unit);
+    for (UnitVerdict* unit : units) {
+      unit->estimate = together(*unit, family);
+      if (unit->estimate) {
+        estimates.push_back(*unit->estimate);
+        compared.push_back(unit);
       }
-      double sum = 0.0, count = 0.0;
-      for (const std::size_t log : unit.logs)
-        if (const FittedExplanation* one = logs_[log].likeliest(family.cause);
-            one != nullptr && one->misfit > 0.0) {
-          sum += 0.5 * std::log(one->misfit);
-          count += 1.0;
-        }
-      if (count == 0.0) continue;
-      usual.push_back(sum / count);
-      misfits.push_back({Eigen::VectorXd::Constant(1, usual.back()), Eigen::MatrixXd::Zero(1, 1)});
-      fitted.push_back(&unit);
+      if (const std::optional<double> misfit = misfit_of(*unit, family.cause)) {
+        usual.push_back(*misfit);
+        misfits.push_back({Eigen::VectorXd::Constant(1, *misfit), Eigen::MatrixXd::Zero(1, 1)});
+        fitted.push_back(unit);
+      }
     }
     const OddUnits by_misfit = find_odd_units(misfits, level);
     const double middle = median(usual);
-    family.usual_misfit = std::exp(2.0 * middle);
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       fitted[i]->misfit = std::exp(usual[i] - middle);
-      if (by_misfit.units[i].odd && fitted[i]->misfit > options_.misfit_matters)
-        fitted[i]->oddity = Oddity::misfit;
+      if (by_misfit.units[i].odd && fitted[i]->misfit > misfit_matters) fitted[i]->oddity = Oddity::misfit;
     }
     if (k == 0) return;
     const OddUnits by_parameter = find_odd_units(estimates, level);
@@ -373,7 +364,7 @@ private:
     }
     for (Eigen::Index c = 0; c < k; ++c)
       family.differs.push_back(family.spread.size() > 0 &&
-                               family.spread.heterogeneity_p[c] < options_.differs / static_cast<double>(k));
+                               family.spread.heterogeneity_p[c] < alike_differ / static_cast<double>(k));
   }
 
   void judge_drifts() {
@@ -392,7 +383,7 @@ private:
         p.push_back(found.back().second.drift.p);
       }
     }
-    const std::vector<bool> stands = holm(p, options_.false_drift);
+    const std::vector<bool> stands = holm(p, false_drift);
     for (std::size_t i = 0; i < found.size(); ++i)
       if (stands[i]) found[i].first->drifts.push_back(found[i].second);
   }
@@ -413,17 +404,14 @@ private:
     const auto fits = [](const FittedExplanation* one) {
       return one != nullptr && one->is_usable() && !one->on_bounds;
     };
-    std::vector<FittedBothWays> units;
+    std::vector<std::vector<FittedBothWays>> units;
     for (const UnitVerdict& unit : result_.units) {
       if (!lacks_nothing(unit)) continue;
-      FittedBothWays both;
-      for (const std::size_t log : unit.logs) {
-        both.without.push_back(logs_[log].find(""));
-        both.with.push_back(logs_[log].find(effect));
-      }
-      if (std::all_of(both.without.begin(), both.without.end(), fits) &&
-          std::all_of(both.with.begin(), both.with.end(), fits))
-        units.push_back(std::move(both));
+      std::vector<FittedBothWays> logs;
+      for (const std::size_t log : unit.logs) logs.push_back({logs_[log].find(""), logs_[log].find(effect)});
+      if (std::all_of(logs.begin(), logs.end(),
+                      [&](const FittedBothWays& log) { return fits(log.without) && fits(log.with); }))
+        units.push_back(std::move(logs));
     }
     return common_shift(units);
   }
@@ -442,8 +430,8 @@ private:
         if (found == result_.weak_shift.end()) continue;
         const auto c = static_cast<Eigen::Index>(k);
         const Shift& shift = found->second;
-        for (const std::size_t i : held_against(f))
-          for (std::optional<Estimate>* one : {&result_.units[i].estimate, &result_.units[i].shrunken})
+        for (UnitVerdict* unit : held_against(f))
+          for (std::optional<Estimate>* one : {&unit->estimate, &unit->shrunken})
             if (*one) {
               (*one)->at[c] += shift.by;
               (*one)->covariance(c, c) += shift.variance;
@@ -465,7 +453,7 @@ private:
         for (const FittedExplanation& one : logs_[log].ranking) {
           // If a hidden start was fitted to the held-out data, their gain is not a test.
           if (one.effects != 1 || one.hidden_starts > 0 || !std::isfinite(one.held_out_gain)) continue;
-          Gain& gain = gains.emplace(one.name, Gain{0.0, 0.0, 0}).first->second;
+          Gain& gain = gains[one.name];
           ++seen[one.name];
           gain.parameters += one.own_parameters();
           gain.train += one.train_gain;
@@ -475,11 +463,10 @@ private:
         if (count < unit.logs.size()) gains.erase(name);
       units.push_back(std::move(gains));
     }
-    result_.weak = weak_effects(units, options_.false_weak);
+    result_.weak = weak_effects(units);
   }
 
   const std::vector<LogResult>& logs_;
-  const FleetOptions options_;
   FleetVerdict result_;
 };
 
@@ -487,8 +474,6 @@ private:
 
 /// The joint statements of many logs: common cause, spread of parameters, odd units, bad logs, drifts, and effects too weak
 /// for any single log.
-inline FleetVerdict judge_fleet(const std::vector<LogResult>& logs, const FleetOptions& options = {}) {
-  return detail::FleetJudge(logs, options).run();
-}
+inline FleetVerdict judge_fleet(const std::vector<LogResult>& logs) { return detail::FleetJudge(logs).run(); }
 
 }  // namespace thermopower::gap::pool

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -81,11 +82,10 @@ struct FittedExplanation {
 
   /// How many coordinates are its effects' own.
   int own_parameters() const {
-    int count = 0;
-    for (const std::string& one : names) count += is_constant(one) ? 0 : 1;
     // A constant that was released is one, too.
-    for (const std::string& one : ids_in(name)) count += is_constant(one) ? 1 : 0;
-    return count;
+    const std::vector<std::string> ids = ids_in(name);
+    return static_cast<int>(std::count_if(ids.begin(), ids.end(), is_constant) +
+                            std::count_if(names.begin(), names.end(), std::not_fn(is_constant)));
   }
 };
 
@@ -113,8 +113,8 @@ struct LogResult {
   /// asks for that. Among equals the one that is listed first.
   const FittedExplanation* likeliest(const std::string& structure) const {
     // An explanation with more effects than the named cause counts as doing no more than it.
-    const FittedExplanation *best = find(structure), *plain = best;
-    const std::size_t most = std::max(chosen_effects, plain == nullptr ? 0 : plain->effects);
+    const FittedExplanation* best = find(structure);
+    const std::size_t most = std::max(chosen_effects, best == nullptr ? 0 : best->effects);
     for (const FittedExplanation& one : ranking)
       if (one.effects <= most && structure_of(one.name) == structure &&
           (best == nullptr || one.probability > best->probability))

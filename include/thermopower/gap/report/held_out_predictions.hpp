@@ -44,16 +44,11 @@ inline std::vector<std::vector<SimulatedSignal>> simulated_as_given(const Model&
                                                                     const std::vector<RowsAsGiven>& rows,
                                                                     const Catalogue& catalogue) {
   assert(rows.size() == inputs.size());
-  std::vector<std::vector<SimulatedSignal>> result(inputs.size());
-  std::vector<std::array<int, signal_count>> columns(inputs.size());
+  std::vector<std::array<Eigen::VectorXd, signal_count>> values(inputs.size());  // empty where not judged
   for (std::size_t r = 0; r < inputs.size(); ++r)
-    for (int i = 0; i < signal_count; ++i) {
-      const auto signal = static_cast<Signal>(i);
-      columns[r][static_cast<std::size_t>(i)] = -1;
-      if (!inputs[r].judged(signal)) continue;
-      columns[r][static_cast<std::size_t>(i)] = static_cast<int>(result[r].size());
-      result[r].push_back({signal_name(model, signal), Eigen::VectorXd::Constant(rows[r].count, missing)});
-    }
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (inputs[r].judged(static_cast<Signal>(i)))
+        values[r][i] = Eigen::VectorXd::Constant(rows[r].count, missing);
   const Plant& plant = plant_of(model);
   const auto take = [&](std::size_t index, const Readings& readings) {
     const Segment& segment = segments[index];
@@ -62,13 +57,17 @@ inline std::vector<std::vector<SimulatedSignal>> simulated_as_given(const Model&
     assert(r < inputs.size() && segment.end <= static_cast<Eigen::Index>(rows[r].place.size()));
     const std::vector<Signal>& signals = plant.signals(segment);
     for (std::size_t k = 0; k < signals.size(); ++k) {
-      const int column = columns[r][static_cast<std::size_t>(signals[k])];
-      for (Eigen::Index row = segment.begin; column >= 0 && row < segment.end; ++row)
-        result[r][static_cast<std::size_t>(column)].values[rows[r].place[static_cast<std::size_t>(row)]] =
-            readings.value(row, static_cast<int>(k));
+      Eigen::VectorXd& of = values[r][static_cast<std::size_t>(signals[k])];
+      for (Eigen::Index row = segment.begin; of.size() > 0 && row < segment.end; ++row)
+        of[rows[r].place[static_cast<std::size_t>(row)]] = readings.value(row, static_cast<int>(k));
     }
   };
   simulate_segments(model, catalogue, segments, SimulationMode::free_running, take);
+  std::vector<std::vector<SimulatedSignal>> result(inputs.size());
+  for (std::size_t r = 0; r < inputs.size(); ++r)
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (inputs[r].judged(static_cast<Signal>(i)))
+        result[r].push_back({signal_name(model, static_cast<Signal>(i)), std::move(values[r][i])});
   return result;
 }
 

@@ -7,7 +7,6 @@
 #include <thermopower/gap/compare/evidence.hpp>
 #include <thermopower/gap/report/estimates.hpp>
 #include <thermopower/gap/compare/fit_noise.hpp>
-#include <thermopower/gap/report/parts.hpp>
 
 #include <algorithm>
 #include <string>
@@ -17,14 +16,6 @@
 /// The fit that the reported parameters come from, where the search looked at averages.
 
 namespace thermopower::gap::engine {
-
-/// Takes the estimates of a fit in the place of those of an explanation that is ranked.
-inline void take_estimates(Diagnosis& result, const Candidate& candidate, const Model& model,
-                           const Weight& weight) {
-  const std::vector<std::string> ids = candidate.explanation.ids(model);
-  for (RankedExplanation& entry : result.ranking)
-    if (entry.effects == ids) describe_fit(entry, candidate, model, weight);
-}
 
 /// Whether what a search fitted are averages of a fast recording of an axis.
 inline bool is_averaged(const FitProblem& searched) {
@@ -76,7 +67,9 @@ inline void fit_to_rows(Diagnosis& result, Candidate& candidate, const FitProble
   options.curvature = true;
   Attribution(problem).polish(candidate, options);
   weight.correlation = of_rows.correlation;
-  take_estimates(result, candidate, *problem.model, weight);
+  for (RankedExplanation& entry : result.ranking)
+    if (entry.effects == candidate.explanation.ids(*problem.model))
+      describe_fit(entry, candidate, *problem.model, weight);
 }
 
 }  // namespace thermopower::gap::engine

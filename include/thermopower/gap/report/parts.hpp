@@ -18,8 +18,12 @@
 #include <cassert>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -40,30 +44,12 @@ inline std::vector<Rival> rivals_of(const std::vector<Candidate>& candidates, st
       order.push_back(&candidates[i]);
   sort_by(order, [](const Candidate* one) { return one->deviance; });
   sort_by(order, [](const Candidate* one) { return -one->probability; });
+  order.resize(std::min(order.size(), most));
   std::vector<Rival> rivals;
   for (const Candidate* one : order)
-    if (rivals.size() < most)
-      rivals.push_back(
-          {one->explanation.ids(model), augmented(model, one->explanation, one->list, one->fit.point)});
+    rivals.push_back(
+        {one->explanation.ids(model), augmented(model, one->explanation, one->list, one->fit.point)});
   return rivals;
-}
-
-/// The parameters of an explanation's fit.
-inline void describe_fit(RankedExplanation& entry, const Candidate& one, const Model& model,
-                         const Weight& weight) {
-  entry.parameters = estimates(one, model, weight);
-  entry.fitted.clear();
-  for (const Eigen::Index at : moving(one)) {
-    const auto k = static_cast<std::size_t>(at);
-    entry.fitted.push_back({one.list[k].name, one.fit.point[at], one.list[k].logarithmic,
-                            k < one.fit.at_bound.size() && one.fit.at_bound[k]});
-  }
-  entry.covariance = covariance_of_moving(one, weight);
-  entry.fixed.clear();
-  for (std::size_t k = 0; k < one.list.size(); ++k)
-    if (one.list[k].still)
-      entry.fixed.push_back(
-          {one.list[k].name, one.fit.point[static_cast<Eigen::Index>(k)], one.list[k].logarithmic, false});
 }
 
 /// What a candidate lacks to be named.
@@ -82,91 +68,47 @@ inline Lacks lacks_of(const Candidate& one, bool is_imitated) {
 /// Every explanation weighed, likeliest first.
 inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, const FitProblem& problem,
                  const Weight& weight) {
+  constexpr std::size_t most_compared = 12;
   std::vector<std::size_t> order = by_deviance(candidates);
   sort_by(order, [&](std::size_t i) { return candidates[i].held_out.any() ? 0 : 1; });
   assert(order.size() == candidates.size() && !order.empty());
-  const double least = candidates[order.front()].deviance;
-  std::vector<Eigen::VectorXd> signatures(order.size());
   const Candidate& empty = candidates.front();
-  const std::size_t compared = std::min<std::size_t>(order.size(), 12);
-  for (std::size_t i = 0; i < compared; ++i) signatures[i] = signature(candidates[order[i]], empty, problem);
-  double whole = 0.0, held = 0.0;
-  for (std::size_t i = 0; i < signal_count; ++i)
-    whole += empty.train.squares[i], held += empty.held_out.squares[i];
+  const double least = candidates[order.front()].deviance, held = empty.held_out.total();
+  std::vector<Eigen::VectorXd> signatures;
+  for (std::size_t i = 0; i < std::min(order.size(), most_compared); ++i)
+    signatures.push_back(signature(candidates[order[i]], empty, problem));
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Candidate& one = candidates[order[i]];
-    RankedExplanation entry;
+    const double squares = one.train.total(), samples = one.train.count();
+    const bool both_held_out = one.held_out.any() && empty.held_out.any();
+    RankedExplanation& entry = result.ranking.emplace_back();
     entry.effects = one.explanation.ids(*problem.model);
     entry.probability = one.probability;
     entry.delta_score = one.deviance - least;
-    double squares = 0.0, samples = 0.0, held_squares = 0.0;
-    for (std::size_t k = 0; k < signal_count; ++k) {
-      squares += one.train.squares[k];
-      samples += one.train.samples[k];
-      held_squares += one.held_out.squares[k];
-    }
     entry.score = samples > 0.0 ? squares / samples : 0.0;
-    entry.held_out_ratio = held > 0.0 && one.held_out.any() ? std::sqrt(held_squares / held) : missing;
-    entry.lacks = lacks_of(one, squares > decision.absorbed * whole);
+    entry.held_out_ratio =
+        held > 0.0 && one.held_out.any() ? std::sqrt(one.held_out.total() / held) : missing;
+    entry.lacks = lacks_of(one, squares > decision.absorbed * empty.train.total());
     entry.train_gain = empty.train_deviance - one.train_deviance;
-    entry.held_out_gain = one.held_out.any() && empty.held_out.any()
-                              ? empty.held_out_deviance - one.held_out_deviance
-                              : missing;
+    entry.held_out_gain = both_held_out ? empty.held_out_deviance - one.held_out_deviance : missing;
     entry.hidden_starts = one.hidden_starts;
     describe_fit(entry, one, *problem.model, weight);
-    for (std::size_t k = 0; k < compared; ++k) {
-      if (k == i || i >= compared) continue;
-      const double cosine = likeness(signatures[i], signatures[k]);
+    for (std::size_t k = 0; i < signatures.size() && k < signatures.size(); ++k) {
+      const double cosine = k == i ? 0.0 : likeness(signatures[i], signatures[k]);
       if (cosine >= decision.confusable)
         entry.confusable.push_back({candidates[order[k]].explanation.ids(*problem.model), cosine});
     }
-    result.ranking.push_back(std::move(entry));
   }
-}
-
-/// Every constant that a fit may move, as configured and as an explanation has it.
-inline std::vector<ConstantEstimate> constants_of(const Candidate& candidate, const Model& model,
-                                                  const Weight& weight) {
-  constexpr double hardly = 0.9;  // of what the file says is known: then the data say nothing of it
-  assert(candidate.list.size() >= model.calibrated().size());
-  const Covariance covariance = covariance_of(candidate, weight);
-  std::vector<ConstantEstimate> list;
-  std::size_t at = 0;
-  for (const CalibratedConstant& constant : model.calibrated()) {
-    const std::size_t place = at++;
-    const Coordinate& one = candidate.list[place];
-    ConstantEstimate entry;
-    entry.name = constant.id;
-    entry.is_place = constant.is_place;
-    entry.uncertainty = model.uncertainty_of(constant);
-    entry.configured = model.get(constant.block + "." + constant.fields.front());
-    const auto moved = [&](double by) { return constant.moved(entry.configured, one.value_of(by)); };
-    const double by = candidate.fit.point[static_cast<Eigen::Index>(place)];
-    entry.fitted = moved(by);
-    if (!(one.upper > one.lower)) {  // it was not fitted
-      entry.determined = false;
-      entry.ci95 = {entry.fitted, entry.fitted};
-      list.push_back(entry);
-      continue;
-    }
-    const Interval interval = interval_of(candidate, place, covariance);
-    const double low = moved(interval.low), high = moved(interval.high);
-    entry.ci95 = {std::min(low, high), std::max(low, high)};
-    entry.determined = interval.high - interval.low < hardly * 2.0 * covariance.quantile * entry.uncertainty;
-    entry.on_bound = place < candidate.fit.at_bound.size() && candidate.fit.at_bound[place];
-    entry.within_known = std::abs(by) <= known_constants.within * entry.uncertainty * (1.0 + 1e-9);
-    list.push_back(entry);
-  }
-  return list;
 }
 
 /// The chosen causes with their parameters.
 /// @param probability  of their class
 inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candidates, const Answer& choice,
                         const Candidate& chosen, const Model& model, const Weight& weight) {
-  const std::vector<ParameterEstimate> all = estimates(chosen, model, weight);
+  const Covariance covariance = covariance_of(chosen, weight);
+  const std::vector<ParameterEstimate> all = estimates(chosen, model, covariance);
   for (const std::string& id : chosen.explanation.ids(model)) {
-    Cause cause;
+    Cause& cause = result.cause.emplace_back();
     cause.effect = id;
     cause.probability = choice.probability;
     for (ParameterEstimate estimate : all)
@@ -174,13 +116,12 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
         estimate.name = estimate.name.substr(id.size() + 1);
         cause.parameters.push_back(std::move(estimate));
       }
-    result.cause.push_back(std::move(cause));
   }
   for (std::size_t index : choice.alternatives) {
     assert(index < candidates.size());
     result.alternatives.push_back(candidates[index].explanation.ids(model));
   }
-  result.correlation = correlation_of_parameters(chosen, weight, model.calibrated().size());
+  result.correlation = correlation_of_parameters(chosen, covariance, model.calibrated().size());
 }
 
 /// If constants alone were fitted, those that moved by more than is known of them are the causes, whether they were
@@ -220,6 +161,23 @@ inline void note_recalibration(Diagnosis& result) {
     result.recalibration += ": they made up for something on the training data that is not a constant";
 }
 
+/// How far a gap shrank: 1 - after / before; 0 where there was none.
+inline double shrinkage(double before, double after) { return before > 0.0 ? 1.0 - after / before : 0.0; }
+
+/// Fills in the root mean squares of a gap, and how far it shrank.
+/// @param before, constants, after  errors as configured, with refitted constants, and with the causes, row by row
+inline void measure_gap(GapScore& gap, const std::vector<double>& before,
+                        const std::vector<double>& constants, const std::vector<double>& after,
+                        unsigned seed) {
+  gap.before = rms_of(before);
+  gap.recalibrated = rms_of(constants);
+  gap.after = rms_of(after);
+  gap.shrunk_by = shrinkage(gap.before, gap.after);
+  gap.ci95 = shrinkage_interval(before, after, seed);
+  gap.beyond_constants = shrinkage_interval(constants, after, seed);
+  gap.by_constants = shrinkage_interval(before, constants, seed);
+}
+
 /// The table without causes: what stands beside "as configured" then are the refitted constants, where these predict held-out
 /// data better. @param model  as configured
 inline void keep_constants_alone(Diagnosis& result, const Model& model) {
@@ -230,7 +188,7 @@ inline void keep_constants_alone(Diagnosis& result, const Model& model) {
   result.augmented = refitted ? result.recalibrated : model;
   for (GapScore& gap : result.gap) {
     gap.after = refitted ? gap.recalibrated : gap.before;
-    gap.shrunk_by = gap.before > 0.0 ? 1.0 - gap.after / gap.before : 0.0;
+    gap.shrunk_by = shrinkage(gap.before, gap.after);
     gap.ci95 = refitted ? gap.by_constants : Interval();
     gap.beyond_constants = {};
   }
@@ -238,14 +196,25 @@ inline void keep_constants_alone(Diagnosis& result, const Model& model) {
     series.augmented = refitted ? series.recalibrated : series.baseline;
 }
 
+/// How the errors of a simulation with the causes vary in time, in one sentence.
+inline std::string looks_of(const SignalSeries& series) {
+  const Eigen::Index steps = series.t_s.size() - 1;
+  std::vector<double> errors = finite_samples(series.augmented - series.measured),
+                      steps_s = finite_samples(series.t_s.tail(steps) - series.t_s.head(steps));
+  const double alike_s = 0.5 * correlation_samples(errors) * median_of(steps_s), rms = rms_of(errors),
+               mean = std::accumulate(errors.begin(), errors.end(), 0.0) /
+                      std::max<double>(1.0, static_cast<double>(errors.size()));
+  return "errors stay alike for about " + two_digits(alike_s) + " s; " +
+         std::to_string(std::lround(100.0 * mean * mean / std::max(rms * rms, 1e-30))) +
+         " % of them is a constant offset of " + two_digits(mean) + " " + series.unit;
+}
+
 /// The rest that the named causes leave. @param left  of training data, by the augmented model
 inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
   Remaining rest;
-  double worst = 0.0;
   for (const GapScore& gap : result.gap) {
     const double times = gap.after / std::max(gap.noise_floor, 1e-12);
-    if (!(times > worst)) continue;
-    worst = times;
+    if (!(times > rest.times_floor)) continue;
     rest.signal = gap.signal;
     rest.times_floor = times;
     const double floor = gap.noise_floor * gap.noise_floor;
@@ -256,28 +225,44 @@ inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
     rest.submodel = left.where.front().submodel;
     rest.regime = left.where.front().regime;
   }
-  for (const SignalSeries& series : result.series) {
-    if (series.signal != rest.signal || series.t_s.size() < 3) continue;
-    assert(series.augmented.size() == series.t_s.size() && series.measured.size() == series.t_s.size());
-    std::vector<double> errors, steps;
-    for (Eigen::Index row = 0; row < series.t_s.size(); ++row) {
-      const double error = series.augmented[row] - series.measured[row];
-      if (std::isfinite(error)) errors.push_back(error);
-      if (row > 0) steps.push_back(series.t_s[row] - series.t_s[row - 1]);
-    }
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
-                     steps.end());
-    const double alike_s = 0.5 * correlation_samples(errors) * steps[steps.size() / 2];
-    double mean = 0.0, square = 0.0;
-    for (double error : errors) mean += error, square += error * error;
-    mean /= std::max<double>(1.0, static_cast<double>(errors.size()));
-    square /= std::max<double>(1.0, static_cast<double>(errors.size()));
-    rest.looks = "errors stay alike for about " + two_digits(alike_s) + " s; " +
-                 std::to_string(std::lround(100.0 * mean * mean / std::max(square, 1e-30))) +
-                 " % of them is a constant offset of " + two_digits(mean) + " " + series.unit;
-    break;
-  }
+  const auto series = std::find_if(result.series.begin(), result.series.end(), [&](const SignalSeries& one) {
+    return one.signal == rest.signal && one.t_s.size() >= 3;
+  });
+  if (series != result.series.end()) rest.looks = looks_of(*series);
   return rest;
+}
+
+/// The errors that a gap is measured by: as configured, with refitted constants, with the causes, and of rivals.
+struct ErrorsOfAll {
+  Errors before, constants, after;
+  std::vector<Errors> rivals;
+};
+
+/// Curves of a signal over one recording.
+/// @param at  of the errors' rows the first one of that recording; afterwards the first one of the next
+inline SignalSeries series_of(const GapScore& gap, Signal signal, const Inputs& recording,
+                              const ErrorsOfAll& errors, const std::vector<Segment>& segments,
+                              const std::vector<Rival>& rivals, std::size_t& at) {
+  const auto i = static_cast<std::size_t>(signal);
+  SignalSeries series;
+  series.signal = gap.signal;
+  series.unit = gap.unit;
+  series.recording = recording.name;
+  series.t_s = recording.t_s;
+  series.measured = recording.of(signal);
+  series.baseline = series.recalibrated = series.augmented =
+      Eigen::VectorXd::Constant(recording.rows(), missing);
+  for (const Rival& rival : rivals) series.rivals.push_back({rival.effects, series.baseline});
+  for (; at < errors.before.of[i].size(); ++at) {
+    if (segments[static_cast<std::size_t>(errors.before.segment[i][at])].inputs != &recording) break;
+    const Eigen::Index row = errors.before.row[i][at];
+    series.baseline[row] = errors.before.simulated[i][at];
+    series.recalibrated[row] = errors.constants.simulated[i][at];
+    series.augmented[row] = errors.after.simulated[i][at];
+    for (std::size_t k = 0; k < rivals.size(); ++k)
+      series.rivals[k].values[row] = errors.rivals[k].simulated[i][at];
+  }
+  return series;
 }
 
 /// Scores and curves on held-out data. @param fitted  with the chosen explanation  @param fits  whether it follows the data it was
@@ -287,60 +272,29 @@ inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
 inline void score(Diagnosis& result, const Model& model, const std::vector<Segment>& segments,
                   const std::vector<Inputs>& inputs, const Model& fitted, bool fits,
                   const std::vector<Rival>& rivals, const Options& options, const Catalogue& catalogue) {
-  const Errors before = errors_of(model, segments, catalogue);
-  const Errors recalibrated = errors_of(result.recalibrated, segments, catalogue);
-  const Errors best = errors_of(fitted, segments, catalogue);
-  std::vector<Errors> others(rivals.size());
-  in_parallel(rivals.size(), options.threads,
-              [&](std::size_t i) { others[i] = errors_of(rivals[i].model, segments, catalogue); });
-  const Errors& after = best;
-  const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(best, segments, inputs);
-  const std::array<double, signal_count> floor =
-      floor_of(fits ? fitted : model, best, sd_of(noise), segments, catalogue, FirstReadings::as_they_are);
+  const auto of = [&](const Model& one) { return errors_of(one, segments, catalogue); };
+  ErrorsOfAll errors{of(model), of(result.recalibrated), of(fitted), std::vector<Errors>(rivals.size())};
+  in_parallel(rivals.size(), options.threads, [&](std::size_t i) { errors.rivals[i] = of(rivals[i].model); });
+  const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(errors.after, segments, inputs);
+  const std::array<double, signal_count> floor = floor_of(fits ? fitted : model, errors.after, sd_of(noise),
+                                                          segments, catalogue, FirstReadings::as_they_are);
   for (std::size_t i = 0; i < signal_count; ++i) {
-    if (before.of[i].empty()) continue;
     // What was measured tells which rows have an error, whatever the model.
-    assert(recalibrated.of[i].size() == before.of[i].size() && after.of[i].size() == before.of[i].size());
+    const std::vector<double>& before = errors.before.of[i];
+    if (before.empty()) continue;
     const Signal signal = static_cast<Signal>(i);
-    GapScore gap;
+    GapScore& gap = result.gap.emplace_back();
     gap.signal = signal_name(model, signal);
     gap.unit = signal_unit(model, signal);
-    if (segments[static_cast<std::size_t>(before.segment[i].front())].axis) gap.horizon_s = options.horizon_s;
-    gap.before = before.rms(signal);
-    gap.recalibrated = recalibrated.rms(signal);
-    gap.after = after.rms(signal);
+    if (segments[static_cast<std::size_t>(errors.before.segment[i].front())].axis)
+      gap.horizon_s = options.horizon_s;
     gap.noise_floor = floor[i];
     gap.by_chance = noise[i].sd > 0.0 ? std::max(noise[i].by_chance / noise[i].sd, 1.0) : 1.0;
-    gap.shrunk_by = gap.before > 0.0 ? 1.0 - gap.after / gap.before : 0.0;
-    gap.ci95 = shrinkage_interval(before.of[i], after.of[i], options.seed);
-    gap.beyond_constants = shrinkage_interval(recalibrated.of[i], after.of[i], options.seed);
-    gap.by_constants = shrinkage_interval(before.of[i], recalibrated.of[i], options.seed);
-    result.gap.push_back(gap);
+    measure_gap(gap, before, errors.constants.of[i], errors.after.of[i], options.seed);
     std::size_t at = 0;
-    for (const Inputs& one : inputs) {
-      if (!one.judged(signal)) continue;
-      SignalSeries series;
-      series.signal = gap.signal;
-      series.unit = gap.unit;
-      series.recording = one.name;
-      series.t_s = one.t_s;
-      series.measured = one.of(signal);
-      series.baseline = series.recalibrated = series.augmented =
-          Eigen::VectorXd::Constant(one.rows(), missing);
-      for (const Rival& rival : rivals) series.rivals.push_back({rival.effects, series.baseline});
-      for (; at < before.of[i].size(); ++at) {
-        const Segment& segment = segments[static_cast<std::size_t>(before.segment[i][at])];
-        if (segment.inputs != &one) break;
-        const Eigen::Index row = before.row[i][at];
-        series.baseline[row] = before.simulated[i][at];
-        series.recalibrated[row] = recalibrated.simulated[i][at];
-        series.augmented[row] = after.simulated[i][at];
-        for (std::size_t k = 0; k < others.size(); ++k)
-          if (at < others[k].row[i].size() && others[k].row[i][at] == row)
-            series.rivals[k].values[row] = others[k].simulated[i][at];
-      }
-      result.series.push_back(std::move(series));
-    }
+    for (const Inputs& one : inputs)
+      if (one.judged(signal))
+        result.series.push_back(series_of(gap, signal, one, errors, segments, rivals, at));
   }
 }
 

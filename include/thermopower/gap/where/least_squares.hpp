@@ -4,13 +4,16 @@
 
 #include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/matrix_product.hpp>
+#include <thermopower/gap/where/thresholds.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 /// @file
@@ -29,12 +32,11 @@ struct Block {
 
 /// A residual, what re-calibration within slack may take from it, and the stretches it is cross-validated on.
 struct Problem {
-  Eigen::VectorXd y;         ///< residual, one per row, in units of one common noise
-  Eigen::MatrixXd nuisance;  ///< rows x constants, each as the effect of moving that constant by 100 %
-  double slack = 0.04;       ///< bound of every nuisance coefficient
-  Eigen::MatrixXd free;      ///< rows x unbounded nuisances (initial states); may have no column
-  Eigen::VectorXi fold;      ///< stretch of each row, 0..folds-1
-  int folds = 8;             ///< number of stretches
+  static constexpr int folds = 8;  ///< number of stretches
+  Eigen::VectorXd y;               ///< residual, one per row, in units of one common noise
+  Eigen::MatrixXd nuisance;        ///< rows x constants, each as the effect of moving that constant by 100 %
+  Eigen::MatrixXd free;            ///< rows x unbounded nuisances (initial states); may have no column
+  Eigen::VectorXi fold;            ///< stretch of each row, 0..folds-1; rows of a stretch lie together
 };
 
 /// Minimises b'Gb - 2 c'b within bounds by an active set. G must be symmetric and positive definite.
@@ -44,38 +46,26 @@ inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::V
   const Eigen::Index n = moment.size();
   assert(gram.rows() == n && gram.cols() == n && lower.size() == n && upper.size() == n);
   const Eigen::VectorXd length = gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
-  std::vector<int> at_bound(static_cast<std::size_t>(n), 0);  // -1 at lower, 0 free, +1 at upper
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index round = 0; round < 6 * n + 10; ++round) {
+  Eigen::VectorXd at_bound = Eigen::VectorXd::Zero(n), x = at_bound;  // -1 at lower, 0 free, +1 at upper
+  for (Eigen::Index round = 0; n > 0 && round < 6 * n + 10; ++round) {
     std::vector<Eigen::Index> open;
     for (Eigen::Index i = 0; i < n; ++i)
-      if (at_bound[static_cast<std::size_t>(i)] == 0) open.push_back(i), x[i] = 0.0;
+      if (at_bound[i] == 0.0) open.push_back(i), x[i] = 0.0;
     Eigen::VectorXd pull = moment;
     for (Eigen::Index i = 0; i < n; ++i)
       if (x[i] != 0.0) pull -= x[i] * gram.col(i);
-    const Eigen::VectorXd solved = SymmetricSystem(gram(open, open)).solve(pull(open));
-    Eigen::Index worst = -1;
-    double excess = 0.0;
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      const Eigen::Index i = open[k];
-      const double value = solved[static_cast<Eigen::Index>(k)],
-                   over = std::max(value - upper[i], lower[i] - value) * length[i];
-      x[i] = value;
-      if (over > excess) excess = over, worst = i;
-    }
-    if (worst >= 0) {
-      at_bound[static_cast<std::size_t>(worst)] = x[worst] > upper[worst] ? 1 : -1;
+    x(open) = SymmetricSystem(gram(open, open)).solve(pull(open));
+    Eigen::Index worst = 0;
+    const Eigen::VectorXd beyond = (x - upper).cwiseMax(lower - x).cwiseProduct(length);
+    if (beyond.maxCoeff(&worst) > 0.0) {
+      at_bound[worst] = x[worst] > upper[worst] ? 1.0 : -1.0;
       x[worst] = std::clamp(x[worst], lower[worst], upper[worst]);
       continue;
     }
-    double most = hardly;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int bound = at_bound[static_cast<std::size_t>(i)];
-      const double inward = -bound * (moment[i] - gram.col(i).dot(x)) / length[i];
-      if (inward > most) most = inward, worst = i;
-    }
-    if (worst < 0) break;
-    at_bound[static_cast<std::size_t>(worst)] = 0;
+    const Eigen::VectorXd inward =
+        at_bound.cwiseProduct(transposed_times(gram, x) - moment).cwiseQuotient(length);
+    if (!(inward.maxCoeff(&worst) > hardly)) break;
+    at_bound[worst] = 0.0;
   }
   return x;
 }
@@ -85,7 +75,7 @@ struct BlockFit {
   std::vector<std::size_t> blocks;  ///< which
   double seen = 0.0;                ///< sum of squares left by the fit on all rows
   double unseen = 0.0;              ///< the same on every stretch, predicted from the others
-  int directions = 0;               ///< columns of the blocks
+  std::size_t directions = 0;       ///< columns of the blocks
   Eigen::VectorXd coefficients;     ///< nuisance, free, then the blocks' columns
 };
 
@@ -93,31 +83,36 @@ struct BlockFit {
 /// cross-validated without touching a row again.
 class BlockFitter {
 public:
-  /// Keeps references to both arguments: they must outlive this object.
-  BlockFitter(const Problem& problem, const std::vector<Block>& blocks) : problem_(problem), blocks_(blocks) {
+  /// @param blocks  as many rows as the problem each
+  BlockFitter(const Problem& problem, const std::vector<Block>& blocks) {
+    constexpr double unbounded = std::numeric_limits<double>::infinity();
     const Eigen::Index rows = problem.y.size();
-    assert(problem.nuisance.rows() == rows && problem.free.rows() == rows && problem.fold.size() == rows);
-    own_ = problem.nuisance.cols() + problem.free.cols();
-    Eigen::Index width = own_;
-    for (const Block& block : blocks) {
-      begin_.push_back(width);
-      width += block.columns.cols();
-      assert(block.columns.rows() == rows);
-    }
-    Eigen::MatrixXd x(rows, width);
-    x.leftCols(problem.nuisance.cols()) = problem.nuisance;
-    x.middleCols(problem.nuisance.cols(), problem.free.cols()) = problem.free;
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-      x.middleCols(begin_[i], blocks[i].columns.cols()) = blocks[i].columns;
-    scale_ = Eigen::VectorXd::Ones(width);
-    for (Eigen::Index j = 0; j < width; ++j) {
+    assert(problem.fold.size() == rows);
+    begin_ = {problem.nuisance.cols() + problem.free.cols()};
+    for (const Block& block : blocks) begin_.push_back(begin_.back() + block.columns.cols());
+    Eigen::MatrixXd x(rows, begin_.back());
+    lower_ = upper_ = scale_ = Eigen::VectorXd::Ones(x.cols());
+    Eigen::Index at = 0;
+    const auto add = [&](const Eigen::MatrixXd& columns, double lower, double upper) {
+      assert(columns.rows() == rows);
+      x.middleCols(at, columns.cols()) = columns;
+      lower_.segment(at, columns.cols()).setConstant(lower);
+      upper_.segment(at, columns.cols()).setConstant(upper);
+      at += columns.cols();
+    };
+    add(problem.nuisance, -where_limits.slack, where_limits.slack);
+    add(problem.free, -unbounded, unbounded);
+    for (const Block& block : blocks) add(block.columns, block.lower, unbounded);
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
       const double norm = x.col(j).norm();
       if (norm > 0.0 && std::isfinite(norm)) x.col(j) *= scale_[j] = 1.0 / norm;
       else x.col(j).setZero();
     }
+    lower_ = lower_.cwiseQuotient(scale_).eval();
+    upper_ = upper_.cwiseQuotient(scale_).eval();
     all_ = Sums(x.topRows(0), problem.y.head(0));
-    of_.assign(static_cast<std::size_t>(problem.folds), all_);
-    for (Eigen::Index begin = 0, end = 0; begin < rows; begin = end) {  // rows of a stretch lie together
+    of_.assign(Problem::folds, all_);
+    for (Eigen::Index begin = 0, end = 0; begin < rows; begin = end) {
       while (end < rows && problem.fold[end] == problem.fold[begin]) ++end;
       const Sums part(x.middleRows(begin, end - begin), problem.y.segment(begin, end - begin));
       of_[static_cast<std::size_t>(problem.fold[begin])].add(part, 1.0);
@@ -128,38 +123,32 @@ public:
   /// Fits nuisances and these blocks together, and judges the fit on stretches that it has not seen.
   BlockFit fit(const std::vector<std::size_t>& chosen) const {
     BlockFit result = fit_all(chosen);
-    const Columns columns = columns_of(chosen);
+    const std::vector<Eigen::Index> columns = columns_of(chosen);
     for (const Sums& one : of_) {
       if (!(one.target > 0.0)) continue;
       Sums others = all_;
       others.add(one, -1.0);
-      result.unseen += one.left(columns.index, others.solve(columns));
+      result.unseen += one.left(columns, solution(others, columns));
     }
     return result;
   }
 
   /// Fits them on all rows alone.
   BlockFit fit_all(const std::vector<std::size_t>& chosen) const {
-    const Columns columns = columns_of(chosen);
-    const Eigen::VectorXd solution = all_.solve(columns);
+    const std::vector<Eigen::Index> columns = columns_of(chosen);
+    const Eigen::VectorXd solved = solution(all_, columns);
     BlockFit result;
     result.blocks = chosen;
-    for (const std::size_t i : chosen) result.directions += static_cast<int>(blocks_[i].columns.cols());
-    result.seen = all_.left(columns.index, solution);
-    result.coefficients = solution.cwiseProduct(scale_(columns.index));
+    result.directions = columns.size() - static_cast<std::size_t>(begin_.front());
+    result.seen = all_.left(columns, solved);
+    result.coefficients = solved.cwiseProduct(scale_(columns));
     return result;
   }
 
   /// How many blocks there are.
-  std::size_t size() const { return blocks_.size(); }
+  std::size_t size() const { return begin_.size() - 1; }
 
 private:
-  /// Some of the columns, and the bounds of their coefficients.
-  struct Columns {
-    std::vector<Eigen::Index> index;
-    Eigen::VectorXd lower, upper;
-  };
-
   /// Sums over rows, all that a fit to them needs.
   struct Sums {
     Eigen::MatrixXd square;
@@ -174,51 +163,37 @@ private:
       moment += times * other.moment;
       target += times * other.target;
     }
-    Eigen::VectorXd solve(const Columns& columns) const {
-      constexpr double ridge = 1e-8;  // of a column's length: two that are the same share their coefficient
-      Eigen::MatrixXd part = square(columns.index, columns.index);
-      part.diagonal().array() += ridge;
-      return bounded_solve(part, moment(columns.index), columns.lower, columns.upper);
-    }
-    double left(const std::vector<Eigen::Index>& index, const Eigen::VectorXd& solution) const {
-      return std::max(
-          0.0, target - 2.0 * solution.dot(moment(index)) + quadratic_form(square(index, index), solution));
+    double left(const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& solution) const {
+      return std::max(0.0, target - 2.0 * solution.dot(moment(columns)) +
+                               quadratic_form(square(columns, columns), solution));
     }
   };
 
-  Columns columns_of(const std::vector<std::size_t>& chosen) const {
-    Columns columns;
-    std::vector<double> lower, upper;
-    const auto add = [&](Eigen::Index from, Eigen::Index count, double low, double high) {
-      for (Eigen::Index j = from; j < from + count; ++j) {
-        columns.index.push_back(j);
-        lower.push_back(low / scale_[j]);
-        upper.push_back(high / scale_[j]);
-      }
-    };
-    constexpr double unbounded = std::numeric_limits<double>::infinity();
-    add(0, problem_.nuisance.cols(), -problem_.slack, problem_.slack);
-    add(problem_.nuisance.cols(), problem_.free.cols(), -unbounded, unbounded);
-    for (const std::size_t i : chosen) add(begin_[i], blocks_[i].columns.cols(), blocks_[i].lower, unbounded);
-    const auto count = static_cast<Eigen::Index>(lower.size());
-    columns.lower = Eigen::Map<const Eigen::VectorXd>(lower.data(), count);
-    columns.upper = Eigen::Map<const Eigen::VectorXd>(upper.data(), count);
+  Eigen::VectorXd solution(const Sums& sums, const std::vector<Eigen::Index>& columns) const {
+    constexpr double ridge = 1e-8;  // of a column's length: two that are the same share their coefficient
+    Eigen::MatrixXd part = sums.square(columns, columns);
+    part.diagonal().array() += ridge;
+    return bounded_solve(part, sums.moment(columns), lower_(columns), upper_(columns));
+  }
+
+  /// The columns of the problem itself, and of some blocks.
+  std::vector<Eigen::Index> columns_of(const std::vector<std::size_t>& chosen) const {
+    std::vector<Eigen::Index> columns(static_cast<std::size_t>(begin_.front()));
+    std::iota(columns.begin(), columns.end(), Eigen::Index{0});
+    for (const std::size_t i : chosen)
+      for (Eigen::Index j = begin_[i]; j < begin_[i + 1]; ++j) columns.push_back(j);
     return columns;
   }
 
-  const Problem& problem_;
-  const std::vector<Block>& blocks_;
-  Eigen::Index own_ = 0;             // columns of the problem itself
-  std::vector<Eigen::Index> begin_;  // first column of each block
-  Eigen::VectorXd scale_;            // of each column: makes its length 1
+  std::vector<Eigen::Index> begin_;        // first column of each block, and one past the last one
+  Eigen::VectorXd lower_, upper_, scale_;  // of each column: bounds of its coefficient; makes its length 1
   Sums all_;
   std::vector<Sums> of_;  // of each stretch
 };
 
 /// Sum of squares that nuisances within their slack and these columns leave on all rows: cheap enough for a scan.
 inline double sum_of_squares_left(const Problem& problem, const Eigen::MatrixXd& columns) {
-  const std::vector<Block> block{{columns}};
-  return BlockFitter(problem, block).fit_all({0}).seen;
+  return BlockFitter(problem, {{columns}}).fit_all({0}).seen;
 }
 
 }  // namespace thermopower::gap::engine

@@ -22,8 +22,7 @@ namespace thermopower::gap::engine {
 
 /// Recordings one after another, as far as they have the same input columns as the longest.
 inline Recording joined(const std::vector<Recording>& recordings) {
-  Recording out;
-  if (recordings.empty()) return out;
+  if (recordings.empty()) return {};
   const Recording& longest =
       *std::max_element(recordings.begin(), recordings.end(),
                         [](const Recording& a, const Recording& b) { return a.rows() < b.rows(); });
@@ -34,6 +33,7 @@ inline Recording joined(const std::vector<Recording>& recordings) {
                     [&](const Column& column) { return one.has(column.name) || !longest.has(column.name); }))
       parts.push_back(&one), rows += one.rows();
   if (parts.size() == 1) return *parts.front();
+  Recording out;
   out.name = longest.name;
   out.t_s.resize(rows);
   for (const Column& column : longest.columns)
@@ -83,9 +83,9 @@ public:
       return;
     }
     const Recording all = joined(recordings);
-    if (all.rows() < LocalisationThresholds().least_rows) return;
+    if (all.rows() < where_limits.least_rows) return;
     if (model.has_axis()) {
-      const Recording part = all.rows() > axis_rows ? stretches(all, axis_rows) : all;
+      const Recording part = stretches(all, axis_rows);
       axis_ = prepare(model, part);
       std::vector<std::string> known{"drive_A",   "rate_dps",  "angle_deg", "motor_C",
                                      "voltage_V", "torque_Nm", "heat_W"};
@@ -133,9 +133,8 @@ private:
 /// that the model already has. A fault in a signal that is not judged cannot be seen.
 /// @throws InvalidInput where a recording is invalid, or the catalogue does not know an effect of the model
 inline Localisation localise(const Model& model, const std::vector<Recording>& recordings,
-                             const LocalisationOptions& options, const Catalogue& catalogue) {
-  const RecordedBalances balances(model, recordings, catalogue);
-  return localise_balances(balances.sources(), actuator_signal_count, options);
+                             const Catalogue& catalogue) {
+  return localise_balances(RecordedBalances(model, recordings, catalogue).sources());
 }
 
 /// Fills MissingQuantity::effect: the missing quantity that the baseline would show if the augmented
@@ -146,7 +145,7 @@ inline void draw_effect(const Model& baseline, std::vector<Recording> simulated,
                         std::vector<MissingQuantity>& quantities) {
   const RecordedBalances balances(baseline, simulated, catalogue);
   simulated.clear();
-  draw_supplied(balances.sources(), actuator_signal_count, quantities);
+  draw_supplied(balances.sources(), quantities);
 }
 
 }  // namespace thermopower::gap::engine

@@ -21,13 +21,6 @@
 
 namespace thermopower::gap::engine {
 
-/// Options of a localisation.
-struct LocalisationOptions {
-  /// How far the baseline's constants may be off without that being a gap, as a fraction.
-  double slack = 0.04;
-  LocalisationThresholds thresholds = {};  ///< of the stage
-};
-
 /// Where simulation and recordings part, and the missing quantity itself.
 struct Localisation {
   std::vector<Location> where;              ///< the largest first; empty where no submodel is at fault
@@ -39,28 +32,27 @@ namespace detail {
 /// A localisation under way.
 class Localiser {
 public:
-  Localiser(const std::vector<plant::BalanceSource>& sources, int signals, const LocalisationOptions& options)
-      : sources_(sources), slack_(options.slack), limit_(options.thresholds), offsets_(signals, 0.0) {
-    for (std::size_t i = 0; i < sources.size(); ++i) {
+  explicit Localiser(const std::vector<plant::BalanceSource>& sources) : sources_(sources) {
+    for (const plant::BalanceSource& source : sources) {
       const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& one) {
-        const plant::BalanceSource& other = sources[one.sources.front()];
-        return other.quantity == sources[i].quantity && other.signal == sources[i].signal;
+        const plant::BalanceSource& other = *one.sources.front();
+        return other.quantity == source.quantity && other.signal == source.signal;
       });
-      if (same == groups_.end()) groups_.push_back({{i}});
-      else same->sources.push_back(i);
+      if (same == groups_.end()) groups_.push_back({{&source}});
+      else same->sources.push_back(&source);
     }
   }
 
   Localisation run() {
     // Balances that have no alternative come first, with the readings as they are.
     for (Group& group : groups_)
-      if (group.sources.size() == 1) judge(group, group.sources.front(), offsets_);
+      if (!group.has_alternatives()) judge(group, *group.sources.front(), offsets_);
     for (std::size_t i = 0; i < groups_.size(); ++i) correct_by(i);
     for (Group& group : groups_)
-      if (group.sources.size() > 1)
-        for (const std::size_t source : group.sources) judge(group, source, offsets_);
+      if (group.has_alternatives())
+        for (const plant::BalanceSource* source : group.sources) judge(group, *source, offsets_);
     for (const Group& group : groups_)
-      if (group.judgement && group.judgement->gap()) place(group);
+      if (group.judgement && group.judgement->gap) place(group);
     sort_by(out_.where, [](const Location& one) { return -one.share; });
     return std::move(out_);
   }
@@ -68,39 +60,42 @@ public:
 private:
   /// The balances of one quantity.
   struct Group {
-    std::vector<std::size_t> sources;         ///< indices
-    std::optional<Judgement> judgement = {};  ///< of the one that counts
-    std::size_t counts = 0;                   ///< its index among all sources
-    plant::ReadingOffsets offsets = {};       ///< by which its readings were corrected
-    bool instrument = false;                  ///< the first freedom's instrument is at fault, not the plant
+    std::vector<const plant::BalanceSource*> sources;  ///< one or more
+    std::optional<Judgement> judgement = {};           ///< of the one that counts
+    const plant::BalanceSource* counts = nullptr;      ///< that one
+    plant::ReadingOffsets offsets = {};                ///< by which its readings were corrected
+    bool instrument = false;  ///< the first freedom's instrument is at fault, not the plant
+
+    bool has_alternatives() const { return sources.size() > 1; }
+    const plant::SignalName& signal() const { return sources.front()->signal; }
   };
 
   /// Judges a balance. Of several of one quantity the best one counts. One that reads a signal without a gap of its own is not
   /// asked: where law and measurement agree there is one flow, and the law's carries no noise.
-  void judge(Group& group, std::size_t source, const plant::ReadingOffsets& offsets) const {
-    const std::vector<plant::SignalName>& reads = sources_[source].reads;
-    if (group.judgement && std::none_of(reads.begin(), reads.end(), [&](const plant::SignalName& signal) {
-          return std::any_of(groups_.begin(), groups_.end(), [&](const Group& one) {
-            return one.judgement && one.judgement->signal() == signal && one.judgement->gap();
-          });
-        }))
-      return;
-    Judgement judgement(sources_[source].make(offsets), slack_, limit_);
-    if (group.judgement && !(judgement.cost() < group.judgement->cost())) return;
-    group.judgement.emplace(std::move(judgement));
-    group.counts = source;
+  void judge(Group& group, const plant::BalanceSource& source, const plant::ReadingOffsets& offsets) const {
+    const auto has_gap = [&](const plant::SignalName& signal) {
+      return std::any_of(groups_.begin(), groups_.end(), [&](const Group& one) {
+        return one.judgement && one.signal() == signal && one.judgement->gap;
+      });
+    };
+    if (group.judgement && std::none_of(source.reads.begin(), source.reads.end(), has_gap)) return;
+    Judgement judgement = judged(source.make(offsets));
+    if (group.judgement && !(judgement.cost < group.judgement->cost)) return;
+    group.judgement = std::move(judgement);
+    group.counts = &source;
     group.offsets = offsets;
   }
 
   /// Corrects readings by what a balance of two instruments says: surely where the fault is the instrument's own. The other
   /// instrument's are corrected where the other balances leave less then.
   void correct_by(std::size_t index) {
-    Group& group = groups_[index];
-    if (!group.judgement || !group.judgement->is_explained_beyond(limit_.instrument_explained)) return;
-    for (const ChosenFreedom& chosen : group.judgement->chosen()) {
-      if (!chosen.freedom.correction) continue;
+    const Group& group = groups_[index];
+    if (!group.judgement || !group.judgement->is_explained_beyond(where_limits.instrument_explained)) return;
+    for (const ChosenFreedom& chosen : group.judgement->chosen) {
+      const std::optional<plant::Correction>& correction = chosen.freedom.correction;
+      if (!correction) continue;
       plant::ReadingOffsets corrected = offsets_;
-      corrected[chosen.freedom.correction->signal] += chosen.freedom.correction->offset * chosen.coefficient;
+      corrected[correction->signal] += correction->offset * chosen.coefficient;
       if (!chosen.freedom.or_instrument) {
         offsets_ = corrected;
         continue;
@@ -110,9 +105,9 @@ private:
       for (std::size_t i = 0; i < groups_.size(); ++i) {
         if (i == index || !groups_[i].judgement) continue;
         others[i].judgement.reset();
-        judge(others[i], others[i].sources.front(), corrected);
-        before += groups_[i].judgement->left();
-        after += others[i].judgement->left();
+        judge(others[i], *others[i].sources.front(), corrected);
+        before += groups_[i].judgement->left;
+        after += others[i].judgement->left;
       }
       if (!(after < before)) continue;
       groups_ = std::move(others);
@@ -125,9 +120,8 @@ private:
   /// Whether a balance with alternatives holds best without a signal's reading.
   bool holds_without(const plant::SignalName& signal) const {
     return std::any_of(groups_.begin(), groups_.end(), [&](const Group& one) {
-      const auto& reads = sources_[one.counts].reads;
-      return one.sources.size() > 1 && one.judgement &&
-             std::find(reads.begin(), reads.end(), signal) == reads.end();
+      return one.has_alternatives() && one.judgement &&
+             std::count(one.counts->reads.begin(), one.counts->reads.end(), signal) == 0;
     });
   }
 
@@ -136,36 +130,22 @@ private:
     return std::any_of(balance.variables.begin(), balance.variables.end(), [&](const auto& one) {
       return one.name == variable && one.from != balance.signal &&
              std::any_of(groups_.begin(), groups_.end(), [&](const Group& other) {
-               return other.judgement && other.judgement->signal() == one.from &&
-                      other.judgement->is_explained_beyond(limit_.instrument_explained) &&
-                      other.judgement->chosen().front().freedom.submodel == other.judgement->instrument();
+               const std::optional<Judgement>& of = other.judgement;
+               return of && other.signal() == one.from &&
+                      of->is_explained_beyond(where_limits.instrument_explained) &&
+                      of->chosen.front().freedom.submodel == of->instrument;
              });
     });
   }
 
-  /// Whether no other submodel can be at fault.
-  static bool is_alone(const plant::Balance& balance) {
-    return std::all_of(balance.freedoms.begin(), balance.freedoms.end(),
-                       [&](const plant::Freedom& one) { return one.submodel == balance.otherwise; });
-  }
-
-  /// The submodel of which a freedom has a variable that nothing else is told of.
-  static plant::SubmodelName submodel_by(const plant::Balance& balance, const OrderingAxis* axis) {
-    plant::SubmodelName found = balance.otherwise;
-    for (const plant::Freedom& one : balance.freedoms)
-      if (axis != nullptr && one.variable == axis->name && one.submodel != balance.instrument)
-        found = one.submodel;
-    return found;
-  }
-
   void place(const Group& group) {
     const Judgement& judgement = *group.judgement;
-    const plant::Balance balance = sources_[group.counts].make(group.offsets);
-    if (judgement.is_explained_beyond(limit_.explained)) {
-      for (const ChosenFreedom& one : judgement.chosen()) {
+    const plant::Balance balance = group.counts->make(group.offsets);
+    if (judgement.is_explained_beyond(where_limits.explained)) {
+      for (const ChosenFreedom& one : judgement.chosen) {
         const plant::Freedom& freedom = one.freedom;
         if (is_misled(balance, freedom.variable)) continue;
-        const bool first = &one == &judgement.chosen().front();
+        const bool first = &one == &judgement.chosen.front();
         Location location{balance.signal, freedom.submodel, one.worth, {}, {}};
         if (first && freedom.or_instrument &&
             (freedom.correction ? group.instrument : holds_without(balance.signal))) {
@@ -174,25 +154,30 @@ private:
         }
         report(std::move(location), freedom.variable, one.words, balance);
       }
-    } else if (balance.otherwise != balance.instrument &&
-               (judgement.before() >= limit_.large || is_alone(balance))) {
-      // Of two instruments that part without an order nobody can say which it is.
-      const Observed observed = observe(balance, true, limit_);
-      report({balance.signal,
-              submodel_by(balance, strongest_axis(observed).axis),
-              std::max(0.0, judgement.explained()),
-              {},
-              {}},
-             "", "no freedom in one submodel helps much; the best", balance);
+      return;
     }
+    // Of two instruments that part without an order nobody can say which it is.
+    if (balance.otherwise == balance.instrument) return;
+    const bool is_alone =
+        std::all_of(balance.freedoms.begin(), balance.freedoms.end(),
+                    [&](const plant::Freedom& one) { return one.submodel == balance.otherwise; });
+    if (judgement.before < where_limits.large && !is_alone) return;
+    // The submodel of which a freedom has a variable that nothing else is told of.
+    const Observed observed = observe(balance, true);
+    const plant::OrderingVariable* axis = strongest_axis(observed).axis;
+    Location location{balance.signal, balance.otherwise, std::max(0.0, judgement.explained), {}, {}};
+    for (const plant::Freedom& one : balance.freedoms)
+      if (axis != nullptr && one.variable == axis->name && one.submodel != balance.instrument)
+        location.submodel = one.submodel;
+    report(std::move(location), "", "no freedom in one submodel helps much; the best", balance);
   }
 
   void report(Location location, const std::string& variable, const std::string& words,
               const plant::Balance& balance) {
-    const Observed observed = observe(balance, location.submodel != balance.instrument, limit_);
+    const Observed observed = observe(balance, location.submodel != balance.instrument);
     const Ordered ordered = strongest_axis(observed);
-    const OrderingAxis* named = observed.find(variable);
-    const OrderingAxis* axis = named != nullptr ? named : ordered.axis;
+    const plant::OrderingVariable* named = observed.find(variable);
+    const plant::OrderingVariable* axis = named != nullptr ? named : ordered.axis;
     char text[80];
     std::snprintf(text, sizeof text,
                   " explains %.0f %% of the excess on stretches that the fit has not seen.",
@@ -205,14 +190,15 @@ private:
                            plant::the_variable(ordered.axis->name) + text;
     }
     if (axis != nullptr) {
-      location.regime = regime_of(observed, *axis, limit_);
-      MissingQuantity picture = picture_of(observed, *axis, limit_);
+      location.regime = regime_of(observed, *axis);
+      MissingQuantity picture = picture_of(observed, *axis);
       picture.signal = location.signal;
       const bool is_drawn =
           std::any_of(out_.quantities.begin(), out_.quantities.end(), [&](const MissingQuantity& one) {
             return one.signal == picture.signal && one.variable == picture.variable;
           });
-      if (picture.x.size() > 1 && !is_drawn && (location.share >= limit_.picture || out_.quantities.empty()))
+      if (picture.x.size() > 1 && !is_drawn &&
+          (location.share >= where_limits.picture || out_.quantities.empty()))
         out_.quantities.push_back(std::move(picture));
     }
     add(std::move(location));
@@ -231,9 +217,7 @@ private:
   }
 
   const std::vector<plant::BalanceSource>& sources_;
-  double slack_;
-  LocalisationThresholds limit_;
-  plant::ReadingOffsets offsets_;
+  plant::ReadingOffsets offsets_;  // that the readings are corrected by
   std::vector<Group> groups_;
   Localisation out_;
 };
@@ -253,31 +237,26 @@ private:
 ///   instrument without a gap of its own is not asked.
 ///
 /// @param sources of one recording, those that place a fault best first
-/// @param signals number of signals of the plant, for the corrections of their readings
-inline Localisation localise_balances(const std::vector<plant::BalanceSource>& sources, int signals,
-                                      const LocalisationOptions& options = {}) {
-  return detail::Localiser(sources, signals, options).run();
+inline Localisation localise_balances(const std::vector<plant::BalanceSource>& sources) {
+  return detail::Localiser(sources).run();
 }
 
 /// Fills MissingQuantity::effect. It is the lack of the baseline's balances in recordings that an augmented model
 /// simulated. It is a smooth curve over the range of the measured ones.
 /// @param sources the baseline's balances of the simulated recordings
-/// @param signals number of signals of the plant
-inline void draw_supplied(const std::vector<plant::BalanceSource>& sources, int signals,
-                          std::vector<MissingQuantity>& quantities,
-                          const LocalisationThresholds& limit = {}) {
+inline void draw_supplied(const std::vector<plant::BalanceSource>& sources,
+                          std::vector<MissingQuantity>& quantities) {
   for (MissingQuantity& q : quantities) {
-    bool is_by_itself =
-        true;  // of alternatives one that reads a simulated signal is taken: it holds by itself
+    // Of alternatives one that reads a simulated signal is taken: it holds by itself.
+    bool is_by_itself = true;
     for (const plant::BalanceSource& source : sources) {
-      const auto reads = std::find(source.reads.begin(), source.reads.end(), q.signal);
-      if ((source.signal != q.signal && reads == source.reads.end()) ||
-          (q.effect.size() > 0 && (!is_by_itself || source.reads.empty())))
-        continue;
-      const plant::Balance balance = source.make(plant::ReadingOffsets(signals, 0.0));
+      const bool shows = source.signal == q.signal ||
+                         std::find(source.reads.begin(), source.reads.end(), q.signal) != source.reads.end();
+      if (!shows || (q.effect.size() > 0 && (!is_by_itself || source.reads.empty()))) continue;
+      const plant::Balance balance = source.make({});
       const bool is_restated = balance.restated && balance.restated->quantity == q.quantity;
       if (!is_restated && balance.quantity != q.quantity) continue;
-      set_effect(q, observe(balance, is_restated, limit));
+      set_effect(q, observe(balance, is_restated));
       is_by_itself = source.reads.empty();
     }
   }

@@ -21,51 +21,53 @@
 
 namespace thermopower::gap::engine {
 
-/// Thresholds of the question in which runs, and from when on, a fault shows.
+/// Thresholds of the question in which runs, and from when on, a fault shows. A balance holds where its
+/// constants leave no more than LocalisationThresholds::gap_seen.
 /// Held by tests/gap/where/occurrence_test.cpp.
 struct OccurrenceThresholds {
   Eigen::Index least_rows = 150;   ///< of a run that is asked about: eight stretches of some twenty rows
   Eigen::Index most_rows = 20000;  ///< of a run: the first of them; more say no more about whether
   std::size_t most_runs = 12;      ///< that are asked about, evenly spread
-  double holds =
-      1.5;  ///< floors that the constants may leave where a balance holds: noise is known to some 20 %
-  double clearly = 4.0;  ///< floors that they leave at least where it does not
-  int stretches = 20;    ///< of a run, at the ends of which a fault may begin
-  int first = 3;         ///< stretches that must hold before it
+  double clearly = 4.0;            ///< floors that the constants leave at least where a balance does not hold
+  int stretches = 20;              ///< of a run, at the ends of which a fault may begin
+  int first = 3;                   ///< stretches that must hold before it
 };
+
+/// The thresholds of every question about runs.
+inline constexpr OccurrenceThresholds occurrence_limits;
 
 namespace detail {
 
 /// A balance of a run and what its constants, moving within their slack, leave of it.
 class HeldBalance {
 public:
-  /// @param slack  how far a constant may be off, as a fraction
-  HeldBalance(plant::Balance balance, double slack)
+  /// @param balance  with readings as they are
+  explicit HeldBalance(plant::Balance balance)
       : balance_(std::move(balance)),
-        projection_(projection_of(balance_, stage_)),
-        whole_(problem_of(balance_, *projection_, slack)),
-        stretch_(projection_->stretches(limit_.stretches)) {}
+        projection_(projection_of(balance_)),
+        whole_(problem_of(balance_, *projection_)),
+        stretch_(projection_->stretches(occurrence_limits.stretches)) {}
 
   HeldBalance(const HeldBalance&) = delete;  // the projection refers to the balance
   HeldBalance& operator=(const HeldBalance&) = delete;
 
   /// Floors that the constants leave of the run; 0 where it has too few rows to tell.
-  double left() const { return left_of(part(0, limit_.stretches)); }
+  double left() const { return left_of(part(rows_of(0, occurrence_limits.stretches))); }
 
   /// Up to when it holds, of one that does not hold to the end; none: there is no such time.
   std::optional<double> holds_until_s() const {
     int held = 0;
-    for (int end = 1; end < limit_.stretches; ++end) {
-      const Problem before = part(0, end);
-      if (left_of(before) > limit_.holds) break;
-      if (before.y.size() >= stage_.least_rows) held = end;
+    for (int end = 1; end < occurrence_limits.stretches; ++end) {
+      const Problem before = part(rows_of(0, end));
+      if (left_of(before) > where_limits.gap_seen) break;
+      if (before.y.size() >= where_limits.least_rows) held = end;
     }
-    if (held < limit_.first || !could_show_before(held)) return {};
-    const Eigen::Index row = balance_.rows->size() * held / limit_.stretches;
-    return balance_.rows->t_s[std::min(row, balance_.rows->size() - 1)];
+    if (held < occurrence_limits.first || !could_show_before(held)) return {};
+    return balance_.rows->t_s[balance_.rows->size() * held / occurrence_limits.stretches];
   }
 
 private:
+  /// Rows of the stretches [from, to).
   std::vector<Eigen::Index> rows_of(int from, int to) const {
     std::vector<Eigen::Index> rows;
     for (Eigen::Index i = 0; i < stretch_.size(); ++i)
@@ -73,21 +75,18 @@ private:
     return rows;
   }
 
-  /// Some stretches of the run.
-  Problem part(int from, int to) const {
-    const std::vector<Eigen::Index> rows = rows_of(from, to);
+  /// Some rows of the run.
+  Problem part(const std::vector<Eigen::Index>& rows) const {
     Problem part;
-    part.slack = whole_.slack;
     part.y = whole_.y(rows);
     part.nuisance = whole_.nuisance(rows, Eigen::all);
     part.free = whole_.free(rows, Eigen::all);
-    part.folds = 1;
     part.fold = Eigen::VectorXi::Zero(part.y.size());
     return part;
   }
 
   double left_of(const Problem& part) const {
-    if (part.y.size() < stage_.least_rows) return 0.0;
+    if (part.y.size() < where_limits.least_rows) return 0.0;
     const double floor =
         projection_->floor() * static_cast<double>(part.y.size()) / static_cast<double>(whole_.y.size());
     return sum_of_squares_left(part, Eigen::MatrixXd(part.y.size(), 0)) / floor;
@@ -96,24 +95,23 @@ private:
   /// Whether the rows before a stretch would have shown the fault of the later rows. If nothing drives a fault there, its
   /// absence says nothing. The freedom with the smallest rest decides.
   bool could_show_before(int held) const {
-    const Problem later = part(held, limit_.stretches);
-    const std::vector<Eigen::Index> after = rows_of(held, limit_.stretches), first = rows_of(0, held);
-    Problem before = part(0, held);
+    const std::vector<Eigen::Index> after = rows_of(held, occurrence_limits.stretches),
+                                    first = rows_of(0, held);
+    const Problem later = part(after);
+    Problem before = part(first);
     double least = std::numeric_limits<double>::infinity();
     for (const plant::Freedom& freedom : balance_.freedoms) {
       const Block all = block_of(freedom, *projection_, whole_);
-      std::vector<Block> block{all};
-      block.front().columns = all.columns(after, Eigen::all);
-      const BlockFit fit = BlockFitter(later, block).fit_all({0});
+      Block block = all;
+      block.columns = all.columns(after, Eigen::all);
+      const BlockFit fit = BlockFitter(later, {block}).fit_all({0});
       if (!(fit.seen < least)) continue;
       least = fit.seen;
       before.y = all.columns(first, Eigen::all) * fit.coefficients.tail(all.columns.cols());
     }
-    return std::isfinite(least) && left_of(before) > limit_.clearly;
+    return std::isfinite(least) && left_of(before) > occurrence_limits.clearly;
   }
 
-  static constexpr OccurrenceThresholds limit_{};
-  static constexpr LocalisationThresholds stage_{};
   plant::Balance balance_;
   std::unique_ptr<Projection> projection_;
   Problem whole_;
@@ -122,47 +120,46 @@ private:
 
 /// One run of a recording, or a part of one that was cut, and its balances.
 struct AskedRun {
+  /// Of the alternatives of a signal the balance that holds best.
+  struct Best {
+    const plant::BalanceSource* source;  ///< it
+    double level;                        ///< floors that the constants leave of it
+  };
   Occurrence name;                             ///< the run
   std::unique_ptr<RecordedBalances> balances;  ///< of it alone
-  std::map<std::string, std::size_t> of = {};  ///< by signal the one that holds best of its alternatives
-  std::map<std::string, double> level = {};    ///< floors that the constants leave of that
+  std::map<std::string, Best> best = {};       ///< by signal
 
   /// Whether it is of the same run as another.
   bool is_of(const Occurrence& run) const {
     return name.recording == run.recording && name.run == run.run && name.held_out == run.held_out;
   }
-  /// A balance of it. @param slack  how far a constant may be off, as a fraction
-  HeldBalance held(std::size_t source, double slack) const {
-    return {balances->sources()[source].make(plant::ReadingOffsets(plant::actuator_signal_count, 0.0)),
-            slack};
+  /// Floors that the constants leave of a signal; NaN where it is not judged.
+  double level(const std::string& signal) const {
+    const auto known = best.find(signal);
+    return known == best.end() ? missing : known->second.level;
   }
 };
 
 /// The runs that are long enough, evenly spread where there are many. @param list  they are added to it
 inline void add_runs(const Model& model, const std::vector<Recording>& recordings, bool held_out,
-                     double slack, const Catalogue& catalogue, std::vector<AskedRun>& list) {
-  constexpr OccurrenceThresholds limit;
+                     const Catalogue& catalogue, std::vector<AskedRun>& list) {
   std::vector<std::pair<const Recording*, RunSpan>> runs;
   for (const Recording& one : recordings)
     for (const RunSpan& run : one.spans())
-      if (run.size() >= limit.least_rows) runs.push_back({&one, run});
-  const std::size_t asked = std::min(runs.size(), limit.most_runs);
+      if (run.size() >= occurrence_limits.least_rows) runs.push_back({&one, run});
+  const std::size_t asked = std::min(runs.size(), occurrence_limits.most_runs);
   for (std::size_t i = 0; i < asked; ++i) {
     const auto& [recording, run] = runs[asked < 2 ? 0 : i * (runs.size() - 1) / (asked - 1)];
-    list.push_back(
-        {{recording->name, run.label, held_out, {}},
-         std::make_unique<RecordedBalances>(model,
-                                            std::vector<Recording>{recording->slice(
-                                                run.begin, std::min(run.end, run.begin + limit.most_rows))},
-                                            catalogue)});
-    AskedRun& part = list.back();
-    for (std::size_t k = 0; k < part.balances->sources().size(); ++k) {
-      const std::string signal = to_string(part.balances->sources()[k].signal);
-      const double level = part.held(k, slack).left();
-      const auto known = part.level.find(signal);
-      if (known != part.level.end() && !(level < known->second)) continue;
-      part.level[signal] = level;
-      part.of[signal] = k;
+    const Eigen::Index end = std::min(run.end, run.begin + occurrence_limits.most_rows);
+    const std::vector<Recording> rows{recording->slice(run.begin, end)};
+    AskedRun& part = list.emplace_back();
+    part.name = {recording->name, run.label, held_out, {}};
+    part.balances = std::make_unique<RecordedBalances>(model, rows, catalogue);
+    for (const plant::BalanceSource& source : part.balances->sources()) {
+      const double level = HeldBalance(source.make({})).left();
+      const auto [known, is_new] =
+          part.best.try_emplace(to_string(source.signal), AskedRun::Best{&source, level});
+      if (!is_new && level < known->second.level) known->second = {&source, level};
     }
   }
 }
@@ -173,30 +170,27 @@ inline void add_runs(const Model& model, const std::vector<Recording>& recording
 /// that show in held-out runs only.
 /// @param train, held_out as the diagnosis is given them
 inline void add_occurrences(const Model& model, const std::vector<Recording>& train,
-                            const std::vector<Recording>& held_out, const LocalisationOptions& options,
-                            const Catalogue& catalogue, Localisation& found) {
-  constexpr OccurrenceThresholds limit;
-  std::vector<detail::AskedRun> parts;
-  detail::add_runs(model, train, false, options.slack, catalogue, parts);
-  detail::add_runs(model, held_out, true, options.slack, catalogue, parts);
-  const auto level = [](const detail::AskedRun& part, const std::string& signal) {
-    const auto known = part.level.find(signal);
-    return known == part.level.end() ? missing : known->second;
-  };
+                            const std::vector<Recording>& held_out, const Catalogue& catalogue,
+                            Localisation& found) {
+  using detail::AskedRun;
+  std::vector<AskedRun> parts;
+  detail::add_runs(model, train, false, catalogue, parts);
+  detail::add_runs(model, held_out, true, catalogue, parts);
   // Runs in which a signal clearly does not hold, and from when on. Empty where it shows in all of them from the first row on.
   const auto occurrences = [&](const std::string& signal) {
     std::vector<Occurrence> list;
-    std::vector<const detail::AskedRun*> of;
+    std::vector<const AskedRun*> of;
     std::size_t runs = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (i == 0 || !parts[i].is_of(parts[i - 1].name)) ++runs;
-      if (!(level(parts[i], signal) >= limit.clearly) || (!list.empty() && parts[i].is_of(list.back())))
+      if (!(parts[i].level(signal) >= occurrence_limits.clearly) ||
+          (!list.empty() && parts[i].is_of(list.back())))
         continue;
       list.push_back(parts[i].name);
       of.push_back(&parts[i]);
     }
     for (std::size_t i = 0; i < list.size(); ++i) {
-      list[i].from_s = of[i]->held(of[i]->of.at(signal), options.slack).holds_until_s();
+      list[i].from_s = detail::HeldBalance(of[i]->best.at(signal).source->make({})).holds_until_s();
       // A fault that shows throughout the first run did not begin in a later one, so the others are not asked.
       if (list.size() == runs && !list.front().from_s) return std::vector<Occurrence>();
     }
@@ -215,18 +209,17 @@ inline void add_occurrences(const Model& model, const std::vector<Recording>& tr
     std::vector<Occurrence> list = occurrences(signal);
     const bool holds_in_some =
         std::any_of(parts.begin(), parts.end(),
-                    [&](const detail::AskedRun& part) { return level(part, signal) < limit.holds; }) ||
+                    [&](const AskedRun& part) { return part.level(signal) < where_limits.gap_seen; }) ||
         std::any_of(list.begin(), list.end(), [](const Occurrence& run) { return run.from_s.has_value(); });
     if (holds_in_some) one->only_in = std::move(list);
   }
-  const bool is_off_in_held_out_alone =
-      std::any_of(parts.begin(), parts.end(), [&](const detail::AskedRun& part) {
-        return part.name.held_out && std::any_of(part.level.begin(), part.level.end(), [&](const auto& one) {
-                 return one.second >= limit.clearly && place_of(one.first) == found.where.end();
-               });
-      });
+  const bool is_off_in_held_out_alone = std::any_of(parts.begin(), parts.end(), [&](const AskedRun& part) {
+    return part.name.held_out && std::any_of(part.best.begin(), part.best.end(), [&](const auto& one) {
+             return one.second.level >= occurrence_limits.clearly && place_of(one.first) == found.where.end();
+           });
+  });
   if (!is_off_in_held_out_alone) return;
-  Localisation later = localise(model, held_out, options, catalogue);
+  Localisation later = localise(model, held_out, catalogue);
   std::vector<Location> more;
   for (Location& one : later.where) {
     const std::string signal = to_string(one.signal);

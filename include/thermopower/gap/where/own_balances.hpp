@@ -28,8 +28,7 @@ namespace thermopower::gap::engine {
 /// recorded variable may order it.
 inline std::vector<plant::BalanceSource> own_balances(const Model& model, const Catalogue& catalogue,
                                                       const std::vector<Inputs>& recordings) {
-  constexpr Eigen::Index windows =
-      300;  // per recording: some fifty for each of the hats that may order a rate
+  constexpr Eigen::Index windows = 300;  // per recording: fifty for each of the hats that may order a rate
   constexpr int hats_of_variable = 6;
   const Plant& plant = plant_of(model);
   const PlantInfo& info = *plant.info();
@@ -113,13 +112,9 @@ inline std::vector<plant::BalanceSource> own_balances(const Model& model, const 
     b.flow_sampled = Eigen::VectorXd::Zero(b.measured.size());
     b.variables = list;
     for (const plant::OrderingVariable& one : list)
-      b.freedoms.push_back(
-          {b.otherwise, one.name, to_string(b.quantity) + " by " + plant::the_variable(one.name),
-           [values = one.values](double) {
-             return plant::directions_of(plant::hats(values, hats_of_variable), [](Eigen::VectorXd column) {
-               return plant::flow_sampled(std::move(column));
-             });
-           }});
+      plant::add_sampled_freedom(b, b.otherwise, one.name,
+                                 to_string(b.quantity) + " by " + plant::the_variable(one.name),
+                                 [values = one.values] { return plant::hats(values, hats_of_variable); });
     sources.push_back({b.quantity, b.signal, {}, [b](const plant::ReadingOffsets&) { return b; }});
   }
   return sources;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/where/least_squares.hpp>
-#include <thermopower/gap/where/rows.hpp>
+#include <thermopower/gap/recording.hpp>
 #include <thermopower/gap/where/test_functions.hpp>
 #include <thermopower/gap/where/thresholds.hpp>
 #include <thermopower/plant/balance.hpp>
@@ -38,6 +38,76 @@ inline Eigen::VectorXd capacity_of(const plant::Balance& balance) {
                                      : Eigen::VectorXd(Eigen::VectorXd::Ones(balance.rows->size()));
 }
 
+/// The flow into a balance at every row.
+inline Eigen::VectorXd flow_of(const plant::Balance& balance) {
+  return balance.flow_held.size() > 0 ? Eigen::VectorXd(balance.flow_sampled + balance.flow_held)
+                                      : balance.flow_sampled;
+}
+
+/// The samples that a test function of a balance must find: NaN where one is missing.
+inline Eigen::VectorXd needed_by(const plant::Balance& balance) {
+  return balance.flow_measured.size() > 0 ? Eigen::VectorXd(balance.measured + balance.flow_measured)
+                                          : balance.measured;
+}
+
+/// The missing quantity of a balance as test functions see it.
+/// @param held  integrals of the flow that holds over intervals
+inline Eigen::VectorXd missing_of(const plant::Balance& balance, const TestFunctions& functions,
+                                  const RowIntegrals& held) {
+  const RowIntegrals &integral = functions.integral(), &derivative = functions.derivative();
+  Eigen::VectorXd missing = integral.of(capacity_of(balance)).cwiseProduct(derivative.of(balance.state)) -
+                            integral.of(balance.flow_sampled);
+  if (balance.flow_held.size() > 0) missing -= held.of(balance.flow_held);
+  return missing;
+}
+
+/// Averages some rows at a time inside each run, so that a million rows cost what ten thousand do.
+class Thinning {
+public:
+  /// @param most  rows that are left, about; rows where `measured` has none do not count into an average
+  Thinning(const std::vector<RunSpan>& runs, const Eigen::VectorXd& measured, Eigen::Index most) {
+    Eigen::Index rows = 0;
+    for (const RunSpan& run : runs) rows += run.size();
+    stride_ = std::max<Eigen::Index>(1, (rows + most - 1) / most);
+    for (const RunSpan& run : runs)
+      for (Eigen::Index i = run.begin; i < run.end; i += stride_) {
+        const std::size_t before = kept_.size();
+        for (Eigen::Index k = i; k < std::min(i + stride_, run.end); ++k)
+          if (std::isfinite(measured[k])) kept_.push_back(k);
+        if (kept_.size() > before) end_.push_back(kept_.size());
+      }
+  }
+
+  /// How many rows are left.
+  Eigen::Index rows() const { return static_cast<Eigen::Index>(end_.size()); }
+  /// How many rows an average is of, at most.
+  Eigen::Index stride() const { return stride_; }
+
+  /// The averages of a column of the full length: rows() of them.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& full) const {
+    assert(kept_.empty() || kept_.back() < full.size());
+    Eigen::VectorXd out(rows());
+    std::size_t k = 0;
+    for (Eigen::Index i = 0; i < rows(); ++i) {
+      const std::size_t begin = k, end = end_[static_cast<std::size_t>(i)];
+      double sum = 0.0;
+      for (; k < end; ++k) sum += full[kept_[k]];
+      out[i] = sum / static_cast<double>(end - begin);
+    }
+    return out;
+  }
+
+private:
+  Eigen::Index stride_ = 1;
+  std::vector<Eigen::Index> kept_;  // those of the first average, then of the second
+  std::vector<std::size_t> end_;    // of each average in them
+};
+
+/// The values of a part of a direction, made where they are not at hand.
+inline Eigen::VectorXd values_of(const plant::BalancePart& part) {
+  return part.make ? part.make() : part.values;
+}
+
 /// Rows in which a balance, and every direction in which it may be off, is compared.
 class Projection {
 public:
@@ -49,7 +119,7 @@ public:
   /// The change by a direction.
   virtual Eigen::VectorXd column(const plant::Direction& direction) const = 0;
   /// The change by the unknown starts of runs; may have no column.
-  virtual Eigen::MatrixXd starts() const = 0;
+  virtual Eigen::MatrixXd starts() const { return Eigen::MatrixXd(rows(), 0); }
   /// The stretch of each row, 0..folds-1; rows of a stretch lie together.
   virtual Eigen::VectorXi stretches(int folds) const = 0;
   /// Sum of squares that noise alone would leave.
@@ -62,12 +132,6 @@ public:
       out.col(k) = column(directions[static_cast<std::size_t>(k)]);
     return out;
   }
-
-protected:
-  /// The values of a part of a direction, made where they are not at hand.
-  static Eigen::VectorXd values_of(const plant::BalancePart& part) {
-    return part.make ? part.make() : part.values;
-  }
 };
 
 /// Row by row, averaged where there are very many. Of a filtered balance these are responses of the baseline's own linear
@@ -75,22 +139,25 @@ protected:
 class RowProjection : public Projection {
 public:
   /// Keeps a reference to `balance`, which must outlive it.
-  RowProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
+  explicit RowProjection(const plant::Balance& balance)
       : b_(balance),
-        most_starts_(limit.most_starts),
-        average_(balance.rows->runs, balance.measured, limit.rows),
-        capacity_(capacity_of(balance)) {
-    Eigen::VectorXd flow = b_.flow_sampled;
-    if (b_.flow_held.size() > 0) flow += b_.flow_held;
-    simulated_ = flow;
+        average_(balance.rows->runs, balance.measured, where_limits.rows),
+        simulated_(flow_of(balance)) {
     if (b_.form != plant::BalanceForm::filtered) return;
-    kept_.resize(b_.rows->size());
+    const Eigen::VectorXd& t_s = b_.rows->t_s;
+    capacity_ = capacity_of(balance);
+    kept_ = reach_s_ = Eigen::VectorXd::Ones(t_s.size());
     for (const RunSpan& run : b_.rows->runs)
-      for (Eigen::Index i = run.begin; i < run.end; ++i)
-        kept_[i] = std::exp(-b_.relaxation_per_s[i] * step_s(i, run));
+      for (Eigen::Index i = run.begin; i + 1 < run.end; ++i) {
+        const double relaxation = b_.relaxation_per_s[i], step_s = t_s[i + 1] - t_s[i];
+        kept_[i] = std::exp(-relaxation * step_s);
+        reach_s_[i] = relaxation > 0.0 ? (1.0 - kept_[i]) / relaxation : step_s;
+      }
     // From the measured start on, with everything but the state itself as measured: then what is left is exact
     // however far a constant is off.
-    simulated_ = filtered(flow.cwiseQuotient(capacity_) + b_.relaxation_per_s.cwiseProduct(b_.state), true);
+    const Eigen::VectorXd pace =
+        simulated_.cwiseQuotient(capacity_) + b_.relaxation_per_s.cwiseProduct(b_.state);
+    simulated_ = carried(b_.state, pace.cwiseProduct(reach_s_));
   }
 
   Eigen::Index rows() const override { return average_.rows(); }
@@ -104,78 +171,57 @@ public:
 
   Eigen::MatrixXd starts() const override {
     const auto& runs = b_.rows->runs;
-    const bool few = kept_.size() > 0 && static_cast<Eigen::Index>(runs.size()) <= most_starts_;
-    Eigen::MatrixXd out(average_.rows(), few ? static_cast<Eigen::Index>(runs.size()) : 0);
+    const bool few = has_state() && static_cast<Eigen::Index>(runs.size()) <= where_limits.most_starts;
+    Eigen::MatrixXd out(rows(), few ? static_cast<Eigen::Index>(runs.size()) : 0);
+    const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(b_.rows->size());
     for (Eigen::Index r = 0; r < out.cols(); ++r) {
-      Eigen::VectorXd left = Eigen::VectorXd::Zero(b_.rows->size());
-      const RunSpan& run = runs[static_cast<std::size_t>(r)];
-      for (Eigen::Index i = run.begin; i < run.end; ++i)
-        left[i] = i == run.begin ? 1.0 : left[i - 1] * kept_[i - 1];
-      out.col(r) = average_(left);
+      Eigen::VectorXd start = nothing;
+      start[runs[static_cast<std::size_t>(r)].begin] = 1.0;
+      out.col(r) = average_(carried(start, nothing));
     }
     return out;
   }
   Eigen::VectorXi stretches(int folds) const override {
-    Eigen::VectorXi fold(average_.rows());
+    Eigen::VectorXi fold(rows());
     for (Eigen::Index i = 0; i < fold.size(); ++i) fold[i] = static_cast<int>(i * folds / fold.size());
     return fold;
   }
   double floor() const override {
     const double sigma = state_noise(b_);
-    return sigma * sigma * static_cast<double>(average_.rows()) / static_cast<double>(average_.stride());
+    return sigma * sigma * static_cast<double>(rows()) / static_cast<double>(average_.stride());
   }
 
 private:
+  bool has_state() const { return kept_.size() > 0; }
+
   Eigen::VectorXd response(const plant::BalancePart& part) const {
     using Kind = plant::BalancePart::Kind;
     if (part.kind == Kind::reading_late)
       return plant::lagged(simulated_, part.delay_s, false, b_.rows->t_s, b_.rows->runs) - simulated_;
     const Eigen::VectorXd values = values_of(part);
-    if (kept_.size() == 0 || part.kind == Kind::reading) return values;
-    return part.kind == Kind::store ? stored(values, part.weight)
-                                    : filtered(values.cwiseQuotient(capacity_), false);
+    if (!has_state() || part.kind == Kind::reading) return values;
+    const Eigen::Index last = values.size() - 1;
+    Eigen::VectorXd gain = Eigen::VectorXd::Zero(values.size());
+    if (part.kind != Kind::store) gain = values.cwiseQuotient(capacity_).cwiseProduct(reach_s_);
+    else gain.head(last) = values.head(last) - values.tail(last);
+    if (part.kind == Kind::store && part.weight.size() > 0) gain = gain.cwiseProduct(part.weight);
+    return carried(Eigen::VectorXd::Zero(values.size()), gain);
   }
 
-  double step_s(Eigen::Index i, const RunSpan& run) const {
-    return i + 1 < run.end ? b_.rows->t_s[i + 1] - b_.rows->t_s[i] : 0.0;
-  }
-
-  /// x' = pace - relaxation x, exactly for a pace that is held over the interval.
-  Eigen::VectorXd filtered(const Eigen::VectorXd& pace, bool from_state) const {
-    assert(pace.size() == kept_.size() && (!from_state || b_.state.size() == kept_.size()));
-    Eigen::VectorXd out(pace.size());
-    for (const RunSpan& run : b_.rows->runs) {
-      double x = from_state ? b_.state[run.begin] : 0.0;
-      for (Eigen::Index i = run.begin; i < run.end; ++i) {
-        out[i] = x;
-        const double keep = kept_[i], relax = b_.relaxation_per_s[i];
-        x = keep * x + pace[i] * (relax > 0.0 ? (1.0 - keep) / relax : step_s(i, run));
-      }
-    }
-    return out;
-  }
-
-  /// Response to the flow that a further store of this content takes.
-  Eigen::VectorXd stored(const Eigen::VectorXd& content, const Eigen::VectorXd& weight) const {
-    assert(content.size() == kept_.size() && (weight.size() == 0 || weight.size() == content.size()));
-    Eigen::VectorXd out(content.size());
-    for (const RunSpan& run : b_.rows->runs) {
-      double x = 0.0;
-      for (Eigen::Index i = run.begin; i < run.end; ++i) {
-        out[i] = x;
-        if (i + 1 == run.end) break;
-        x = kept_[i] * x - (weight.size() > 0 ? weight[i] : 1.0) * (content[i + 1] - content[i]);
-      }
-    }
+  /// A state that relaxes over each row's interval and gains something in it.
+  /// @param start  read at the first row of each run
+  Eigen::VectorXd carried(const Eigen::VectorXd& start, const Eigen::VectorXd& gain) const {
+    assert(start.size() == kept_.size() && gain.size() == kept_.size());
+    Eigen::VectorXd out = start;
+    for (const RunSpan& run : b_.rows->runs)
+      for (Eigen::Index i = run.begin; i + 1 < run.end; ++i) out[i + 1] = kept_[i] * out[i] + gain[i];
     return out;
   }
 
   const plant::Balance& b_;
-  Eigen::Index most_starts_;
   Thinning average_;
-  Eigen::VectorXd capacity_;
-  Eigen::VectorXd
-      kept_;  // of a state after each row's interval, if nothing flows: 0..1; empty: there is no state
+  Eigen::VectorXd capacity_, kept_,
+      reach_s_;  // of a state: share left after an interval, gain of a pace; or empty
   Eigen::VectorXd simulated_;
 };
 
@@ -183,18 +229,14 @@ private:
 class WeakProjection : public Projection {
 public:
   /// Keeps a reference to `balance`, which must outlive it.
-  WeakProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
-      : b_(balance), capacity_(capacity_of(balance)) {
+  explicit WeakProjection(const plant::Balance& balance) : b_(balance), capacity_(capacity_of(balance)) {
     const double state = state_noise(balance) * capacity_.cwiseAbs().mean();
-    Eigen::VectorXd needed = balance.measured;
-    double flow = 0.0;
-    if (balance.flow_measured.size() > 0) {
-      needed += balance.flow_measured;
-      flow = plant::sample_noise(balance.flow_measured, balance.rows->runs);
-    }
+    const double flow = balance.flow_measured.size() > 0
+                            ? plant::sample_noise(balance.flow_measured, balance.rows->runs)
+                            : 0.0;
     for (const int half_width : balance.half_widths) {
-      TestFunctions functions(balance.rows, needed, half_width,
-                              widths_.empty() ? limit.narrow_functions : limit.wide_functions);
+      TestFunctions functions(balance.rows, needed_by(balance), half_width,
+                              widths_.empty() ? where_limits.narrow_functions : where_limits.wide_functions);
       const double noise =
           std::hypot(state * functions.derivative().gain(), flow * functions.integral().gain());
       rows_ += functions.size();
@@ -205,13 +247,7 @@ public:
 
   Eigen::Index rows() const override { return rows_; }
   Eigen::VectorXd residual() const override {
-    return joined([&](const Width& width) {
-      const TestFunctions& f = width.functions;
-      Eigen::VectorXd left = f.integral().of(capacity_).cwiseProduct(f.derivative().of(b_.state)) -
-                             f.integral().of(b_.flow_sampled);
-      if (b_.flow_held.size() > 0) left -= width.held.of(b_.flow_held);
-      return left;
-    });
+    return joined([&](const Width& width) { return missing_of(b_, width.functions, width.held); });
   }
 
   Eigen::VectorXd column(const plant::Direction& direction) const override {
@@ -221,8 +257,6 @@ public:
       return sum;
     });
   }
-
-  Eigen::MatrixXd starts() const override { return Eigen::MatrixXd(rows_, 0); }
 
   Eigen::VectorXi stretches(int folds) const override {
     Eigen::VectorXi fold(rows_);
@@ -282,10 +316,9 @@ private:
 };
 
 /// The projection of a balance's form; the balance must outlive it.
-inline std::unique_ptr<Projection> projection_of(const plant::Balance& balance,
-                                                 const LocalisationThresholds& limit) {
-  if (balance.form == plant::BalanceForm::weak) return std::make_unique<WeakProjection>(balance, limit);
-  return std::make_unique<RowProjection>(balance, limit);
+inline std::unique_ptr<Projection> projection_of(const plant::Balance& balance) {
+  if (balance.form == plant::BalanceForm::weak) return std::make_unique<WeakProjection>(balance);
+  return std::make_unique<RowProjection>(balance);
 }
 
 /// The directions of a freedom; of a scan those that leave least.
@@ -307,10 +340,8 @@ inline Block block_of(const plant::Freedom& freedom, const Projection& projectio
 }
 
 /// The residual of a balance with what its constants may take from it.
-/// @param slack  how far a constant may be off, as a fraction
-inline Problem problem_of(const plant::Balance& balance, const Projection& projection, double slack) {
+inline Problem problem_of(const plant::Balance& balance, const Projection& projection) {
   Problem problem;
-  problem.slack = slack;
   problem.y = projection.residual();
   std::vector<plant::Direction> moved;
   for (const plant::ConstantDirection& constant : balance.constants) {
@@ -319,7 +350,7 @@ inline Problem problem_of(const plant::Balance& balance, const Projection& proje
   }
   problem.nuisance = projection.columns(moved);
   problem.free = projection.starts();
-  problem.fold = projection.stretches(problem.folds);
+  problem.fold = projection.stretches(Problem::folds);
   return problem;
 }
 

@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 /// @file
 /// A smooth curve through samples.
@@ -102,20 +104,21 @@ inline SmoothCurve smooth_curve(const Eigen::VectorXd& x, const Eigen::VectorXd&
     bends.block<2, 2>(k, k) += level * first * first.transpose();
     if (k + 2 < Sums::size) bends.block<3, 3>(k, k) += second * second.transpose();
   }
-  const auto missed = [&](double stiffness) {
+  std::vector<double> stiffnesses, missed;  // by each the mean square that the eighths' predictions miss by
+  double least = std::numeric_limits<double>::infinity();
+  for (double stiffness = softest; stiffness < stiffest; stiffness *= step) {
     double squares = 0.0;
     for (const Sums& one : of)
       squares += one.left_by(
           SymmetricSystem(all.left - one.left + stiffness * all.count * bends).solve(all.right - one.right));
-    return std::max(0.0, squares / all.count);
-  };
-  double least = std::numeric_limits<double>::infinity();
-  for (double stiffness = softest; stiffness < stiffest; stiffness *= step)
-    least = std::min(least, missed(stiffness));
+    stiffnesses.push_back(stiffness);
+    missed.push_back(std::max(0.0, squares / all.count));
+    least = std::min(least, missed.back());
+  }
   const double mean = all.sum / all.count, variance = std::max(0.0, all.squares / all.count - mean * mean);
   double chosen = softest;
-  for (double stiffness = softest; stiffness < stiffest; stiffness *= step)
-    if (missed(stiffness) <= (1.0 + as_good) * least + as_good_of_all * variance) chosen = stiffness;
+  for (std::size_t i = 0; i < missed.size(); ++i)
+    if (missed[i] <= (1.0 + as_good) * least + as_good_of_all * variance) chosen = stiffnesses[i];
   const SymmetricSystem solver(all.left + chosen * all.count * bends);
   const Eigen::VectorXd a = solver.solve(all.right);
   SmoothCurve curve{Eigen::VectorXd::LinSpaced(places, from, to), Eigen::VectorXd(places)};

@@ -12,6 +12,7 @@ namespace thermopower::gap::engine {
 /// Held by tests/gap/where/localisation_test.cpp, and judged on seed 20270221 in docs/reference/gap-benchmark.md.
 struct LocalisationThresholds {
   // When there is something to place.
+  double slack = 0.04;           ///< how far constants may be off without that being a gap, as a fraction
   Eigen::Index least_rows = 30;  ///< rows; fewer cannot be cross-validated on eight stretches
   double nothing_seen =
       1.15;  ///< a fit of the constants alone that leaves no more on all rows needs no freedom,
@@ -43,12 +44,14 @@ struct LocalisationThresholds {
   Eigen::Index picture_samples = 4000;   ///< of a missing quantity
   Eigen::Index picture_least = 60;       ///< samples that a picture must keep when noise asks for wider ones
   int picture_first = 4;                 ///< rows: the narrowest half width tried for it
-  int picture_last = 400;                ///< rows: the widest
   double picture_noise = 0.04;           ///< noise of a sample of it, as a share of the held flow's RMS
   int picture_bins = 28;                 ///< bins of a picture
   int regime_bins = 10;                  ///< bins among which the regime is found
   double regime_half = 0.5;              ///< of the largest bin: its neighbours above it belong to the regime
   Eigen::Index most_starts = 6;          ///< runs whose starts are freed one by one
 };
+
+/// The thresholds of every localisation.
+inline constexpr LocalisationThresholds where_limits;
 
 }  // namespace thermopower::gap::engine
