@@ -2,18 +2,19 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/own_inputs.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
-#include <thermopower/plant/goal_profile.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/charge_before.hpp>
+#include <thermopower/plant/goal_profile.hpp>
 #include <thermopower/plant/plant.hpp>
+#include <thermopower/plant/plant_info.hpp>
 #include <thermopower/plant/rows.hpp>
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,15 +95,41 @@ inline std::string columns_in_words(const Recording& recording) {
   return names;
 }
 
+/// Takes from a recording what a plant of one's own needs, by the names of its columns.
+inline Inputs prepare_own(const plant::PlantInfo& info, const Recording& recording) {
+  Inputs inputs;
+  inputs.own = true;
+  inputs.name = recording.name;
+  inputs.t_s = recording.t_s;
+  inputs.runs = recording.spans();
+  bool complete = true;
+  for (const plant::PlantInput& input : info.inputs) {
+    if (recording.has(input.name)) {
+      inputs.own_inputs.push_back(held(recording.column(input.name), inputs.runs));
+    } else {
+      if (!input.otherwise) {
+        complete = false;
+        inputs.not_judged.push_back({"", "nothing is judged: the recording has no column " + input.name});
+      }
+      inputs.own_inputs.push_back(Eigen::VectorXd::Constant(recording.rows(), input.otherwise.value_or(0.0)));
+    }
+  }
+  for (std::size_t i = 0; i < info.signals.size(); ++i) {
+    const std::string& name = info.signals[i].name;
+    if (!recording.has(name))
+      inputs.not_judged.push_back(
+          {name, plant::the_variable(name) + " is not judged: the recording has no column " + name});
+    else if (complete) inputs.measured[i] = recording.column(name);
+  }
+  return inputs;
+}
+
 /// Takes from a recording what the model needs, and notes what cannot be judged and why.
 /// @throws InvalidInput where the recording is invalid
 inline Inputs prepare(const Model& model, const Recording& recording) {
   if (const auto problem = recording.validate())
     throw InvalidInput("recording '" + recording.name + "': " + *problem);
-  if (model.own)
-    return prepare_own(
-        *model.own->equations->info(), recording,
-        [](const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) { return held(values, runs); });
+  if (model.own) return prepare_own(*model.own->equations->info(), recording);
   Inputs inputs;
   inputs.name = recording.name;
   inputs.t_s = recording.t_s;
@@ -227,7 +254,11 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
 
 /// What is not judged, each sentence once. One that holds of some recordings only names them: of the others the signal is
 /// judged.
-inline std::vector<std::string> not_judged_in(const std::vector<const Inputs*>& all) {
+/// @param parts  of the recordings
+inline std::vector<std::string> not_judged_in(std::initializer_list<const std::vector<Inputs>*> parts) {
+  std::vector<const Inputs*> all;
+  for (const std::vector<Inputs>* const part : parts)
+    for (const Inputs& one : *part) all.push_back(&one);
   std::vector<std::string> sentences;
   for (const Inputs* one : all)
     for (const plant::NotJudged& note : one->not_judged)

@@ -328,9 +328,7 @@ THERMOPOWER_GAP_INLINE DataReport check_data(const Model& model, const std::vect
     inputs.push_back(one.inputs());
     if (one.recording().rows() > longest->recording().rows()) longest = &one;
   }
-  std::vector<const Inputs*> all;
-  for (const Inputs& one : inputs) all.push_back(&one);
-  report.not_judged = engine::not_judged_in(all);
+  report.not_judged = engine::not_judged_in({&inputs});
   std::vector<Inputs> judged_on;
   for (const engine::PreparedRecording& one : checked.held_out) judged_on.push_back(one.inputs());
   report.too_little = engine::lacking(model, inputs, false, options.horizon_s, report.next_experiment);

@@ -89,10 +89,8 @@ inline std::string lacking(const Model& model, const std::vector<Inputs>& part, 
   }
   const std::string words = part_in_words(part, held_out);
   if (name.empty()) {
-    std::vector<const Inputs*> all;
-    for (const Inputs& one : part) all.push_back(&one);
     std::string why;
-    for (const std::string& one : not_judged_in(all)) why += (why.empty() ? ": " : "; ") + one;
+    for (const std::string& one : not_judged_in({&part})) why += (why.empty() ? ": " : "; ") + one;
     mend =
         "record what is missing, or say which columns it is in: 'thermopower-gap columns FILE' proposes options --column "
         "NAME=HEADER:UNIT";
