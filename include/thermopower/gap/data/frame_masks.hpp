@@ -61,10 +61,10 @@ inline double finest_step(const Eigen::VectorXd& values, const std::vector<RunSp
   const double largest = steps.empty() ? 0.0 : *std::max_element(steps.begin(), steps.end());
   steps.erase(std::remove_if(steps.begin(), steps.end(), [&](double x) { return !(x > nothing * largest); }),
               steps.end());
-  SortedFromBelow sorted(std::move(steps));
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-    if (sorted[i] <= sorted[i - 1] * (1.0 + same)) return sorted[i - 1];
-  return 0.0;
+  std::sort(steps.begin(), steps.end());
+  const auto twice = std::adjacent_find(steps.begin(), steps.end(),
+                                        [](double less, double more) { return more <= less * (1.0 + same); });
+  return twice == steps.end() ? 0.0 : *twice;
 }
 
 /// Rests of an output that reads an exact 0 there: whether the others stand for as long meanwhile. Of a fine angle the noise
@@ -239,26 +239,20 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     }
     return false;
   };
+  const auto is_repeat = [&](Eigen::Index row) { return same[static_cast<std::size_t>(row)] == 2; };
   for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin + 1; i < run.end;) {
-      if (same[static_cast<std::size_t>(i)] != 2) {
-        ++i;
-        continue;
-      }
-      Eigen::Index end = i;
-      while (end < run.end && same[static_cast<std::size_t>(end)] == 2) ++end;
+    for_each_stretch(run.begin + 1, run.end, is_repeat, [&](Eigen::Index begin, Eigen::Index end) {
       const std::size_t moves =
-          std::max(speed[static_cast<std::size_t>(i)], speed[static_cast<std::size_t>(end - 1)]);
+          std::max(speed[static_cast<std::size_t>(begin)], speed[static_cast<std::size_t>(end - 1)]);
       const Odds& alike = as_fast_as[moves - std::min(moves, frames.slower_speeds)];
       const Odds& odds = outputs.size() < 2 || alike.rows < frames.least_moving ? overall : alike;
-      const double by_chance = odds.rows * std::pow(odds.chance, static_cast<double>(end - i));
-      // What sticks, and then breaks away, repeats no frame.
-      if (!rests.may_be(i, end - i) && end - i <= frames.longest_repeat &&
-          ((odds.repeats_are_rare() && is_alone(run, i, end)) ||
-           (by_chance < frames.never_by_chance && catches_up(run, i, end))))
-        for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
-      i = end;
-    }
+      const double by_chance = odds.rows * std::pow(odds.chance, static_cast<double>(end - begin));
+      // A column that sticks, and then breaks away, repeats no frame.
+      if (!rests.may_be(begin, end - begin) && end - begin <= frames.longest_repeat &&
+          ((odds.repeats_are_rare() && is_alone(run, begin, end)) ||
+           (by_chance < frames.never_by_chance && catches_up(run, begin, end))))
+        std::fill(mask.begin() + begin, mask.begin() + end, 1);
+    });
   return by(Rule::repeated_frames, std::move(mask));
 }
 
@@ -297,20 +291,16 @@ inline RowMask lost_frames(const std::vector<const Eigen::VectorXd*>& recorded,
     return true;
   };
   for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin; i < run.end; ++i) {
-      if (!is_default(i)) continue;
-      Eigen::Index end = i;
-      while (end < run.end && is_default(end)) ++end;
-      const bool is_inside = i > run.begin && end < run.end && end - i <= limit.longest_burst;
+    for_each_stretch(run.begin, run.end, is_default, [&](Eigen::Index begin, Eigen::Index end) {
+      const bool is_inside = begin > run.begin && end < run.end && end - begin <= limit.longest_burst;
       for (std::size_t c = 0; is_inside && c < recorded.size(); ++c) {
-        const double before = (*recorded[c])[i - 1], after = (*recorded[c])[end];
+        const double before = (*recorded[c])[begin - 1], after = (*recorded[c])[end];
         // Farther from both ends than they from each other: no motion passes there in between.
         const double off = std::min(std::abs(defaults[c] - before), std::abs(defaults[c] - after));
-        if (!(off > least[c] && off > std::abs(after - before))) continue;
-        for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
+        if (off > least[c] && off > std::abs(after - before))
+          std::fill(mask.begin() + begin, mask.begin() + end, 1);
       }
-      i = end;
-    }
+    });
   return by(Rule::lost_frames, std::move(mask));
 }
 

@@ -3,14 +3,12 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
-#include <thermopower/gap/data/extremes.hpp>
 #include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/data/spikes.hpp>
 #include <thermopower/gap/rule.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -21,13 +19,6 @@
 /// stretches. Every threshold is a multiple of a median, so that a tenth of the rows may be bad.
 
 namespace thermopower::gap::engine {
-
-/// Makes samples of a column missing. @param mask  which; empty: none
-inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
-  assert(static_cast<Eigen::Index>(mask.size()) <= values.size());
-  for (std::size_t i = 0; i < mask.size(); ++i)
-    if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
-}
 
 /// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier
 /// one took.
@@ -42,52 +33,57 @@ public:
     equal_share_ = equal_share_of(steps);
     scale_ = white_scale(values, runs);
     usual_step_ = quantile_of(steps, 0.75);
+    if (const Eigen::VectorXd* const other = traits.at_rest != nullptr ? traits.at_rest : traits.integral)
+      other_equal_share_ = equal_share_of(step_sizes(*other, runs));
+    if (traits.at_rest != nullptr) {
+      constexpr double rest_share = 0.05,  // of the rate's 90th percentile
+          rest_steps = 2.0;                // of a coarse rate, which may be off by one
+      std::vector<double> rates = finite_samples(traits.at_rest->cwiseAbs());
+      rest_rate_ = std::max(rest_share * quantile_of(rates, 0.9), rest_steps * quantum_of(*traits.at_rest));
+    }
+    if (traits.integral != nullptr)
+      position_step_ = quantum_of(*traits.integral) + white_scale(*traits.integral, runs);
   }
 
   /// Noise scale of the column.
   double scale() const { return scale_; }
   /// Share of neighbours with the same value.
   double equal_share() const { return equal_share_; }
-  /// The column without what was masked so far.
-  const Eigen::VectorXd& values() const { return values_; }
 
   /// Takes samples away that are set in a mask.
   void take(const RowMask& mask) { take_away(values_, mask); }
 
   /// Isolated samples (one, or two of five) far from all around them.
   RowMask spikes() {
-    return taken(Rule::outlier_rejection, Spikes(values_, runs_, traits_, scale_, quantum_,
-                                                 traits_.integral != nullptr ? position_step() : 0.0)
-                                              .find());
+    return taken(Rule::outlier_rejection,
+                 Spikes(values_, runs_, traits_, scale_, quantum_, position_step_).find());
   }
 
   /// Stretches that jump away from the level before them and back to it. What climbs a slope and comes down one, as a temperature
   /// that overshoots, does neither.
   RowMask bursts() {
     RowMask mask = empty();
-    const double least =
-        std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_, limit_.quanta * quantum_});
+    const double least = least_jump();
     std::vector<double> list = finite_samples(values_);
     const double range = middle_range_of(list);
     for (const RunSpan& run : runs_) {
-      const std::vector<Eigen::Index> rows = finite_rows(run);
+      const std::vector<Eigen::Index> rows = OrderedSamples(values_, nullptr, run).rows;
       for (std::size_t i = 1; i < rows.size(); ++i) {
         const double level = values_[rows[i - 1]], jump = values_[rows[i]] - level;
         if (!(std::abs(jump) > least) || !(least > 0.0) || is_on_a_slope(rows, i)) continue;
         std::size_t end = i;
         bool stuck = true, away = true;
         const auto off = [&](std::size_t k) { return (values_[rows[k]] - level) / jump; };
-        while (end < rows.size() && off(end) > limit_.stayed_away) {
+        const auto is_too_long = [&] {
+          return end - i > static_cast<std::size_t>(stuck ? limit_.longest_stuck : limit_.longest_burst);
+        };
+        for (; end < rows.size() && off(end) > limit_.stayed_away && !is_too_long(); ++end) {
           stuck = stuck && values_[rows[end]] == values_[rows[i]];
           away = away && std::abs(values_[rows[end]] - level) > limit_.outside * range;
-          ++end;
-          const auto length = static_cast<Eigen::Index>(end - i);
-          if (length > (stuck ? limit_.longest_stuck : limit_.longest_burst)) break;
         }
-        const auto length = static_cast<Eigen::Index>(end - i);
-        if (end == rows.size() || length > (stuck ? limit_.longest_stuck : limit_.longest_burst)) continue;
+        if (end == rows.size() || is_too_long()) continue;
         if (!(off(end) < limit_.came_back) || is_on_a_slope(rows, end)) continue;
-        if (!traits_.cannot_jump && !away && !(stuck && length > 1 && equal_share_ < limit_.hardly_equal))
+        if (!traits_.cannot_jump && !away && !(stuck && end - i > 1 && equal_share_ < limit_.hardly_equal))
           continue;
         if (!traits_.cannot_jump && traits_.zero_is_rest && values_[rows[i]] == 0.0) continue;
         for (std::size_t k = i; k < end; ++k) mask[static_cast<std::size_t>(rows[k])] = 1;
@@ -100,11 +96,12 @@ public:
   /// Stretches of one value where noise or motion would show: all but their first row.
   RowMask frozen() {
     RowMask mask = empty();
+    quiet_scale_ = quiet_scale();
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      std::vector<Eigen::Index> rows = finite_rows(runs_[r]);
+      std::vector<Eigen::Index> rows = OrderedSamples(values_, nullptr, runs_[r]).rows;
       // A temperature does not jump while the logger pauses, either.
       while (traits_.cannot_jump && r + 1 < runs_.size() && runs_[r + 1].label == runs_[r].label) {
-        const std::vector<Eigen::Index> more = finite_rows(runs_[++r]);
+        const std::vector<Eigen::Index> more = OrderedSamples(values_, nullptr, runs_[++r]).rows;
         rows.insert(rows.end(), more.begin(), more.end());
       }
       for (std::size_t begin = 0; begin < rows.size();) {
@@ -149,11 +146,9 @@ private:
     return before * step > 0.0 && std::abs(before) > limit_.on_a_slope * std::abs(step);
   }
 
-  std::vector<Eigen::Index> finite_rows(const RunSpan& run) const {
-    std::vector<Eigen::Index> rows;
-    for (Eigen::Index i = run.begin; i < run.end; ++i)
-      if (std::isfinite(values_[i])) rows.push_back(i);
-    return rows;
+  /// The least change of the column that may be a jump.
+  double least_jump() const {
+    return std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_, limit_.quanta * quantum_});
   }
 
   /// Whether the sensor's range ends at an extreme.
@@ -163,7 +158,10 @@ private:
       return true;  // no converter reads that: a limit is set
     // A sensor that has more to tell stays at its end; what returns there for one row at a time is the beat of a clock and a
     // steady motion.
-    if (!piles_up(one) || !stays_at(one)) return false;
+    const bool piles_up =
+        one.count >= limit_.least_clipped &&
+        static_cast<double>(one.count) >= limit_.clip_ratio * static_cast<double>(one.beside);
+    if (!piles_up || !stays_at(one)) return false;
     // A slow signal in coarse steps stands still by itself; but not where another column sees it move.
     const bool is_witnessed = traits_.integral != nullptr || traits_.at_rest != nullptr;
     const bool stands_still = stands_still_besides(one.value);
@@ -243,7 +241,6 @@ private:
   /// Noise that shows everywhere, where the column moves least, too. A joint that comes to rest without noise stands as well as a
   /// sensor that stopped.
   double quiet_scale() const {
-    if (quiet_scale_ >= 0.0) return quiet_scale_;
     constexpr Eigen::Index window = 8;
     constexpr double quietest = 0.1;  // of the windows in which it is not all the same
     std::vector<double> scales;
@@ -254,13 +251,11 @@ private:
         const auto bends = part.head(window - 2) - 2.0 * part.segment(1, window - 2) + part.tail(window - 2);
         scales.push_back(std::sqrt(bends.square().mean() / 6.0));  // of white noise: 1 + 4 + 1
       }
-    return quiet_scale_ = scales.empty() ? scale_ : std::min(scale_, quantile_of(scales, quietest));
+    return scales.empty() ? scale_ : std::min(scale_, quantile_of(scales, quietest));
   }
 
   bool resting(Eigen::Index row) const {
-    if (traits_.at_rest == nullptr) return false;
-    const double rate = (*traits_.at_rest)[row];
-    return !(std::abs(rate) > rest_rate());
+    return traits_.at_rest != nullptr && !(std::abs((*traits_.at_rest)[row]) > rest_rate_);
   }
 
   /// Whether a column that rarely stands stood, too, or was lost, from a row on: then frames were repeated, and it tells nothing. An
@@ -272,24 +267,7 @@ private:
       if (other[row] == 0.0 || (std::isfinite(stood_at) && other[row] != stood_at)) return false;
       stood_at = other[row];
     }
-    if (other_equal_share_ < 0.0) other_equal_share_ = equal_share_of(step_sizes(other, runs_));
     return other_equal_share_ < limit_.rarely_equal;
-  }
-
-  double rest_rate() const {
-    if (rest_rate_ >= 0.0) return rest_rate_;
-    constexpr double rest_share = 0.05,  // of the rate's 90th percentile
-        rest_steps = 2.0;                // of a coarse rate, which may be off by one
-    std::vector<double> list = finite_samples(traits_.at_rest->cwiseAbs());
-    return rest_rate_ =
-               std::max(rest_share * quantile_of(list, 0.9), rest_steps * quantum_of(*traits_.at_rest));
-  }
-
-  /// A quantum and the noise of the column that this one is the rate of.
-  double position_step() const {
-    if (position_quantum_ < 0.0)
-      position_quantum_ = quantum_of(*traits_.integral) + white_scale(*traits_.integral, runs_);
-    return position_quantum_;
   }
 
   /// Whether the column that this one is the rate of moves on by `rate` between two rows: then the rate is right.
@@ -304,7 +282,7 @@ private:
     const Eigen::Index middle = from + (to - from) / 2;
     const double halfway = position[middle] - position[from];
     const double half_s = (*traits_.t_s)[middle] - (*traits_.t_s)[from];
-    const double allowed = off_share * std::abs(rate) * lasts_s + quanta * position_step();
+    const double allowed = off_share * std::abs(rate) * lasts_s + quanta * position_step_;
     return std::abs(moved - rate * lasts_s) <= allowed &&
            (!std::isfinite(halfway) || std::abs(halfway - rate * half_s) <= allowed);
   }
@@ -318,7 +296,7 @@ private:
     while (from < to && !std::isfinite(position[to])) --to;
     const double lasts_s = (*traits_.t_s)[to] - (*traits_.t_s)[from];
     const double off = std::abs(position[to] - position[from] - rate * lasts_s);
-    return off > (share * std::abs(rate) + quantum_) * lasts_s + quanta * position_step();
+    return off > (share * std::abs(rate) + quantum_) * lasts_s + quanta * position_step_;
   }
 
   /// Ways by which a rate says that an angle went over some rows, of all its motions that last: a rate may have spikes.
@@ -338,9 +316,9 @@ private:
       const double way = moves ? rate[row] * (t_s[row + 1] - t_s[row]) : 0.0;
       in_a_row = moves ? in_a_row + 1 : 0;
       part = moves ? part + way : 0.0;
-      if (in_a_row == least) ways.all += part;
-      else if (in_a_row > least) ways.all += way;
-      if (in_a_row >= least) ways.farthest = std::max(ways.farthest, std::abs(part));
+      if (in_a_row < least) continue;
+      ways.all += in_a_row == least ? part : way;
+      ways.farthest = std::max(ways.farthest, std::abs(part));
     }
     return ways;
   }
@@ -398,15 +376,15 @@ private:
     constexpr Eigen::Index around = 3;
     std::ptrdiff_t count = 0;
     for (const RunSpan& run : runs_)
-      for (Eigen::Index row = run.begin; row < run.end;) {
-        Eigen::Index end = row;
-        std::ptrdiff_t moving = 0;
-        for (; end < run.end && values_[end] == value; ++end) moving += resting(end) ? 0 : 1;
-        if (moving > 0 &&
-            !moves_on(std::max(run.begin, row - around), std::min(run.end - 1, end - 1 + around), value))
-          count += moving;
-        row = std::max(end, row + 1);
-      }
+      for_each_stretch(
+          run.begin, run.end, [&](Eigen::Index row) { return values_[row] == value; },
+          [&](Eigen::Index begin, Eigen::Index end) {
+            std::ptrdiff_t moving = 0;
+            for (Eigen::Index row = begin; row < end; ++row) moving += resting(row) ? 0 : 1;
+            if (!moves_on(std::max(run.begin, begin - around), std::min(run.end - 1, end - 1 + around),
+                          value))
+              count += moving;
+          });
     return count;
   }
 
@@ -431,7 +409,7 @@ private:
     if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value) &&
         !repeats_too(*traits_.integral, rows[begin], rows[end - 1]))
       return false;
-    if (improbable && (quantum_ < quiet_scale() || moves_otherwise(rows[begin], rows[end - 1], value)))
+    if (improbable && (quantum_ < quiet_scale_ || moves_otherwise(rows[begin], rows[end - 1], value)))
       return true;
     if (traits_.cannot_jump && rests_otherwise(rows, begin, end)) return true;
     // Of a coarse thermometer only a reading that has to catch up tells that it stood. What steps, and may step, is held:
@@ -449,8 +427,7 @@ private:
     for (std::size_t k = end + 1; k < std::min(rows.size(), end + 1 + after); ++k)
       next = std::max(next, std::abs(values_[rows[k]] - values_[rows[k - 1]]));
     if (!traits_.cannot_jump && !(jump > static_cast<double>(after) * next)) return false;
-    return jump > std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_,
-                            limit_.quanta * quantum_}) &&
+    return jump > least_jump() &&
            (end + 1 == rows.size() || std::abs(values_[rows[end + 1]] - value) > limit_.stayed_away * jump);
   }
 
@@ -464,8 +441,11 @@ private:
   Eigen::VectorXd values_;
   const std::vector<RunSpan>& runs_;
   ColumnTraits traits_;
-  double quantum_ = 0.0, scale_ = 0.0, usual_step_ = 0.0, equal_share_ = 0.0;
-  mutable double rest_rate_ = -1.0, other_equal_share_ = -1.0, position_quantum_ = -1.0, quiet_scale_ = -1.0;
+  double quantum_, scale_, usual_step_, equal_share_;
+  double rest_rate_ = 0.0;          // of traits_.at_rest: slower is a rest
+  double position_step_ = 0.0;      // quantum and noise of traits_.integral
+  double other_equal_share_ = 1.0;  // of either of them: share of neighbours with the same value
+  double quiet_scale_ = 0.0;        // while it is asked what is frozen
 };
 
 }  // namespace thermopower::gap::engine

@@ -61,16 +61,13 @@ struct InputColumn {
 };
 
 /// The columns that are inputs wherever they are recorded.
-inline const std::vector<InputColumn>& input_columns() {
-  static const std::vector<InputColumn> columns = {
-      {"power_param", InputPace::command}, {"drive_A", InputPace::command},
-      {"voltage_V", InputPace::command},   {"target_deg", InputPace::command},
-      {"target_dps", InputPace::command},  {"target_C", InputPace::command},
-      {"torque_Nm", InputPace::command},   {"heat_W", InputPace::command},
-      {"supply_V", InputPace::slow},       {"ambient_C", InputPace::slow},
-      {"airspeed_mps", InputPace::slow},   {"neighbour_C", InputPace::slow}};
-  return columns;
-}
+inline constexpr InputColumn input_columns[] = {
+    {"power_param", InputPace::command}, {"drive_A", InputPace::command},
+    {"voltage_V", InputPace::command},   {"target_deg", InputPace::command},
+    {"target_dps", InputPace::command},  {"target_C", InputPace::command},
+    {"torque_Nm", InputPace::command},   {"heat_W", InputPace::command},
+    {"supply_V", InputPace::slow},       {"ambient_C", InputPace::slow},
+    {"airspeed_mps", InputPace::slow},   {"neighbour_C", InputPace::slow}};
 
 /// Whether a baseline ignores an input: then its holes cut no run.
 inline bool is_ignored(const Model& model, const std::string& column) {
@@ -116,37 +113,24 @@ inline std::vector<RunSpan> without(const std::vector<RunSpan>& runs, const RowM
   assert(runs.empty() || runs.back().end <= static_cast<Eigen::Index>(unknown.size()));
   std::vector<RunSpan> result;
   for (const RunSpan& run : runs)
-    for (Eigen::Index row = run.begin; row < run.end;) {
-      if (unknown[static_cast<std::size_t>(row)] != 0) {
-        ++row;
-        continue;
-      }
-      RunSpan piece = run;
-      piece.begin = row;
-      piece.goes_on = run.goes_on || row > run.begin;
-      while (row < run.end && unknown[static_cast<std::size_t>(row)] == 0) ++row;
-      piece.end = row;
-      result.push_back(piece);
-    }
+    for_each_stretch(
+        run.begin, run.end, [&](Eigen::Index row) { return unknown[static_cast<std::size_t>(row)] == 0; },
+        [&](Eigen::Index begin, Eigen::Index end) {
+          RunSpan piece = run;
+          piece.begin = begin;
+          piece.end = end;
+          piece.goes_on = run.goes_on || begin > run.begin;
+          result.push_back(piece);
+        });
   return result;
 }
 
-/// Whether two values of a command count as the same: then it is taken to have stood still between them.
-class CommandRange {
-public:
-  /// @param values  of the column, NaN where missing
-  explicit CommandRange(const Eigen::VectorXd& values) {
-    std::vector<double> list = finite_samples(values);
-    range_ = quantile_of(list, 0.98) - quantile_of(list, 0.02);
-  }
-  /// Whether a command that was `before` and is `after` stood still meanwhile.
-  bool same(double before, double after) const {
-    return std::abs(after - before) <= SegmentThresholds().same_command * range_;
-  }
-
-private:
-  double range_ = 0.0;
-};
+/// By how much two values of a command may differ that count as the same: then it is taken to have stood still between them.
+/// @param values  of the column, NaN where missing
+inline double same_command_within(const Eigen::VectorXd& values) {
+  std::vector<double> list = finite_samples(values);
+  return SegmentThresholds().same_command * (quantile_of(list, 0.98) - quantile_of(list, 0.02));
+}
 
 /// The intervals between the stamps of runs, in s.
 inline std::vector<double> intervals_of(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
@@ -201,10 +185,10 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
              "the interval varies from " + short_number(shortest) + " to " + short_number(longest) +
                  " s around " + short_number(usual) + " s");
   const double pause = std::max(shortest_pause(steps), unnoticed_s(model));
-  std::vector<std::pair<const Eigen::VectorXd*, CommandRange>> commands;
-  for (const InputColumn& input : input_columns())
+  std::vector<std::pair<const Eigen::VectorXd*, double>> commands;  // and within how much they are the same
+  for (const InputColumn& input : input_columns)
     if (input.pace == InputPace::command && r.has(input.name) && !is_ignored(model, input.name))
-      commands.emplace_back(r.find(input.name), CommandRange(*r.find(input.name)));
+      commands.emplace_back(r.find(input.name), same_command_within(*r.find(input.name)));
   RowMask cut(static_cast<std::size_t>(r.rows()), 0);
   double worst = 0.0;
   for (const RunSpan& run : runs)
@@ -212,8 +196,8 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
       const double step = r.t_s[i] - r.t_s[i - 1];
       if (!(step > pause)) continue;
       bool stood_still = step <= static_cast<double>(limit.held_rows) * usual && !commands.empty();
-      for (const auto& [values, range] : commands)
-        stood_still = stood_still && range.same((*values)[i - 1], (*values)[i]);
+      for (const auto& [values, within] : commands)
+        stood_still = stood_still && std::abs((*values)[i] - (*values)[i - 1]) <= within;
       if (stood_still) continue;
       cut[static_cast<std::size_t>(i)] = starts[static_cast<std::size_t>(i)] = 1;
       worst = std::max(worst, step);
@@ -312,29 +296,22 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
   constexpr SegmentThresholds limit;
   assert(values.size() == t_s.size() && static_cast<Eigen::Index>(unknown.size()) == values.size());
   Eigen::VectorXd filled = values;
-  const CommandRange range(values);
+  const double same_within = same_command_within(values);
   const double noise = white_scale(values, runs) + quantum_of(values);
+  const auto is_missing = [&](Eigen::Index row) { return !std::isfinite(values[row]); };
   for (const RunSpan& run : runs)
-    for (Eigen::Index row = run.begin; row < run.end;) {
-      if (std::isfinite(values[row])) {
-        ++row;
-        continue;
-      }
-      Eigen::Index end = row;
-      while (end < run.end && !std::isfinite(values[end])) ++end;
+    for_each_stretch(run.begin, run.end, is_missing, [&](Eigen::Index row, Eigen::Index end) {
       const bool inside = row > run.begin && end < run.end;
       const double before = row > run.begin ? values[row - 1] : missing,
                    after = end < run.end ? values[end] : missing;
-      bool known = false;
+      bool known = (inside && t_s[end] - t_s[row - 1] <= stands_s) || std::isinf(stands_s);
       if (input.pace == InputPace::command)
-        // What is off at one end only was switched in between.
-        known = inside && end - row <= limit.held_rows && range.same(before, after) &&
-                (before == 0.0) == (after == 0.0);
-      else
-        known = (inside &&
-                 (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
-                (!inside && (row > run.begin || end < run.end) && end - row <= limit.bridged_rows);
-      known = known || (inside && t_s[end] - t_s[row - 1] <= stands_s) || std::isinf(stands_s);
+        // A command that is off at one end only was switched in between.
+        known = known || (inside && end - row <= limit.held_rows && std::abs(after - before) <= same_within &&
+                          (before == 0.0) == (after == 0.0));
+      else if (row > run.begin || end < run.end)
+        known = known || end - row <= limit.bridged_rows ||
+                (inside && std::abs(after - before) <= limit.slow_noise * noise);
       if (!untold.empty() && end - row > limit.bridged_rows)
         known = known && std::find(untold.begin() + row, untold.begin() + end, 1) == untold.begin() + end;
       for (Eigen::Index i = row; i < end; ++i) {
@@ -344,8 +321,7 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
           filled[i] = std::isfinite(before) ? before : after;
         else filled[i] = before + (after - before) * (t_s[i] - t_s[row - 1]) / (t_s[end] - t_s[row - 1]);
       }
-      row = end;
-    }
+    });
   return filled;
 }
 

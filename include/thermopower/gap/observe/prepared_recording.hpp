@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -372,7 +373,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
                   "look at what reads the sensor");
     if (name == "current_A" && drives_by_current_) {
       untold_current_ = clipped;
-      for (std::size_t i = 0; i < frozen.size(); ++i) untold_current_[i] |= frozen[i];
+      add_to(untold_current_, frozen);
     }
     if (still.equal_share() > 0.999999 && present > 20)
       list.add(FindingKind::constant_column, Severity::note, name, "never changes");
@@ -391,10 +392,9 @@ inline void PreparedRecording::mask_slow_input(const std::string& name, Eigen::V
   traits.cannot_jump = name != "supply_V";  // a supply gives way to the load
   SampleMasks masks(values, believed_.runs, traits);
   RowMask mask = masks.spikes();
-  const RowMask bursts = masks.bursts();
+  add_to(mask, masks.bursts());
   const Eigen::VectorXd* power = name == "supply_V" ? believed_.find("power_param") : nullptr;
   for (std::size_t i = 0; i < mask.size(); ++i) {
-    mask[i] = mask[i] != 0 || bursts[i] != 0 ? 1 : 0;
     if (mask[i] == 0 || power == nullptr) continue;
     const auto row = static_cast<Eigen::Index>(i);  // a step of the load may show for a row
     if ((row > 0 && (*power)[row] != (*power)[row - 1]) ||
@@ -419,7 +419,7 @@ inline double PreparedRecording::stands_between_samples(const Recording& recorde
 }
 
 inline void PreparedRecording::fill_inputs(const Model& model, const Recording& recorded, FindingList& list) {
-  std::vector<InputColumn> inputs = input_columns();
+  std::vector<InputColumn> inputs(std::begin(input_columns), std::end(input_columns));
   if (drives_by_current_) inputs.push_back({"current_A", InputPace::slow});
   for (const InputColumn& input : inputs) {
     Column* found = nullptr;
@@ -436,11 +436,11 @@ inline void PreparedRecording::fill_inputs(const Model& model, const Recording& 
       believed_.remove(input.name);  // a run without a sample
       continue;
     }
-    for (std::size_t i = 0; i < mask.size(); ++i) unknown_[i] = unknown_[i] != 0 || mask[i] != 0 ? 1 : 0;
+    add_to(unknown_, mask);
     list.add_rows(FindingKind::unknown_input, Severity::note, input.name, mask, FindingAction::segmented,
                   "are missing between values that differ; their rows are not judged",
                   "log the inputs at every row");
-    if (holes > 0 && FindingList::ranges_of(mask).empty())
+    if (holes > 0 && ranges_of(mask).empty())
       list.add(FindingKind::missing_samples, Severity::note, input.name,
                std::to_string(holes) + " samples are missing between values that tell what they were");
   }
