@@ -123,7 +123,7 @@ inline std::vector<double> step_sizes(const Eigen::VectorXd& values, const std::
   return list;
 }
 
-/// Share of steps of 0, 1 of none.
+/// Share of numbers that are 0, such as of steps between equal neighbours; 1 of none.
 inline double equal_share_of(const std::vector<double>& steps) {
   const auto equal = std::count(steps.begin(), steps.end(), 0.0);
   return steps.empty() ? 1.0 : static_cast<double>(equal) / static_cast<double>(steps.size());

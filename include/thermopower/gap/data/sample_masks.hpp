@@ -9,6 +9,7 @@
 #include <thermopower/gap/rule.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -19,6 +20,26 @@
 /// stretches. Every threshold is a multiple of a median, so that a tenth of the rows may be bad.
 
 namespace thermopower::gap::engine {
+
+/// Exact zeros of the current at a power at which current flows otherwise.
+inline RowMask lost_current(const Eigen::VectorXd& current_A, const Eigen::VectorXd& power, double scale_A) {
+  constexpr double clearly = 10.0, mostly = 0.5;  // noise scales of a current that flows; share of its rows
+  constexpr std::size_t bands = 26;               // of ten counts
+  const auto band = [](double counts) {
+    return static_cast<std::size_t>(std::clamp(counts / 10.0, 0.0, bands - 1.0));
+  };
+  std::array<std::vector<double>, bands> read;
+  for (Eigen::Index i = 0; i < current_A.size(); ++i)
+    if (power[i] > 0.0 && std::isfinite(current_A[i])) read[band(power[i])].push_back(current_A[i]);
+  std::array<bool, bands> flows{};
+  for (std::size_t k = 0; k < bands; ++k)
+    flows[k] = equal_share_of(read[k]) <= mostly &&
+               std::abs(quantile_of(read[k], 0.25)) > clearly * std::max(scale_A, 1e-12);
+  RowMask mask(static_cast<std::size_t>(current_A.size()), 0);
+  for (Eigen::Index i = 0; i < current_A.size(); ++i)
+    if (power[i] > 0.0 && current_A[i] == 0.0 && flows[band(power[i])]) mask[static_cast<std::size_t>(i)] = 1;
+  return mask;
+}
 
 /// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier
 /// one took.

@@ -108,6 +108,14 @@ inline std::vector<RunSpan> cut_at(const std::vector<RunSpan>& runs, const RowMa
   return result;
 }
 
+/// The runs cut wherever the power steps.
+inline std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power, const std::vector<RunSpan>& runs) {
+  RowMask starts(static_cast<std::size_t>(power.size()), 0);
+  for (Eigen::Index i = 1; i < power.size(); ++i)
+    starts[static_cast<std::size_t>(i)] = std::isfinite(power[i]) && power[i] != power[i - 1] ? 1 : 0;
+  return cut_at(runs, starts, true);
+}
+
 /// Runs without the rows that are set in `unknown`: what is left of each, as segments.
 inline std::vector<RunSpan> without(const std::vector<RunSpan>& runs, const RowMask& unknown) {
   assert(runs.empty() || runs.back().end <= static_cast<Eigen::Index>(unknown.size()));

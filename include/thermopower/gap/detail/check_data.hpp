@@ -6,6 +6,7 @@
 #include <thermopower/gap/detail/check.hpp>
 #include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/data/neighbour_motion.hpp>
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/fit/judgeable.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -164,18 +166,10 @@ private:
 
 /// Whether a need is a column of the recording.
 inline bool is_column(plant::Need need) {
-  switch (need) {
-    case plant::Need::current_A:
-    case plant::Need::motor_C:
-    case plant::Need::angle_deg:
-    case plant::Need::rate_dps:
-    case plant::Need::power_param:
-    case plant::Need::airspeed_mps:
-    case plant::Need::neighbour_C:
-      return true;
-    default:
-      return false;
-  }
+  constexpr plant::Need columns[] = {
+      plant::Need::current_A,   plant::Need::motor_C,      plant::Need::angle_deg,  plant::Need::rate_dps,
+      plant::Need::power_param, plant::Need::airspeed_mps, plant::Need::neighbour_C};
+  return std::find(std::begin(columns), std::end(columns), need) != std::end(columns);
 }
 
 /// A parameter of usual size: where fits begin.
@@ -250,8 +244,7 @@ inline Eigen::MatrixXd judge_constants(const Model& model, const Responses& resp
     }
     report.only_together.push_back(std::move(weak));
   }
-  std::stable_sort(report.only_together.begin(), report.only_together.end(),
-                   [](const Combination& a, const Combination& b) { return a.sd > b.sd; });
+  sort_by(report.only_together, [](const Combination& one) { return -one.sd; });
   return slopes;
 }
 
@@ -305,8 +298,7 @@ inline void judge_effects(const Model& model, const Recording& recording, const 
       if (std::abs(signatures[a].dot(signatures[b])) > limit.alike * norm)
         report.effects[a].alike.push_back(report.effects[b].effect);
     }
-  std::stable_sort(report.effects.begin(), report.effects.end(),
-                   [](const EffectReport& a, const EffectReport& b) { return a.visible > b.visible; });
+  sort_by(report.effects, [](const EffectReport& one) { return -one.visible; });
 }
 
 }  // namespace engine

@@ -4,7 +4,6 @@
 
 #include <thermopower/gap/data/clock.hpp>
 #include <thermopower/gap/observe/command_between_rows.hpp>
-#include <thermopower/gap/data/current_masks.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/frame_masks.hpp>
 #include <thermopower/gap/observe/lagging_output.hpp>
