@@ -296,16 +296,14 @@ private:
     constexpr double off_share = 0.02, quanta = 4.0;
     if (traits_.integral == nullptr) return false;
     const Eigen::VectorXd& position = *traits_.integral;
-    const double lasts_s = (*traits_.t_s)[to] - (*traits_.t_s)[from];
-    const double moved = position[to] - position[from];
-    if (!std::isfinite(moved)) return false;
+    const Eigen::VectorXd& t_s = *traits_.t_s;
+    const auto off = [&](Eigen::Index row) {
+      return std::abs(position[row] - position[from] - rate * (t_s[row] - t_s[from]));
+    };
     // The way as a whole, and half of it: a motion there and back ends where it began.
     const Eigen::Index middle = from + (to - from) / 2;
-    const double halfway = position[middle] - position[from];
-    const double half_s = (*traits_.t_s)[middle] - (*traits_.t_s)[from];
-    const double allowed = off_share * std::abs(rate) * lasts_s + quanta * position_step_;
-    return std::abs(moved - rate * lasts_s) <= allowed &&
-           (!std::isfinite(halfway) || std::abs(halfway - rate * half_s) <= allowed);
+    const double allowed = off_share * std::abs(rate) * (t_s[to] - t_s[from]) + quanta * position_step_;
+    return off(to) <= allowed && (!std::isfinite(position[middle]) || off(middle) <= allowed);
   }
 
   /// Whether the column that this one is the rate of moves by something else than `rate`, though rounded, between two rows.
