@@ -56,6 +56,14 @@ inline std::string two_digits(double value) {
   return short_number(std::strtod(text, nullptr));
 }
 
+/// Names as sentences have them: "a, b and 3 more". @param most  names that are spelled
+inline std::string listed(const std::vector<std::string>& names, std::size_t most = 1000) {
+  std::string words;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) words += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > most) words += " and " + std::to_string(names.size() - most) + " more";
+  return words;
+}
+
 /// The words about several samples as they are of one: "lie far from all around them", "lies far from all around it".
 /// @param words  begin with a verb, or with "of every output" and a verb
 inline std::string said_of_one(std::string words) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
@@ -64,20 +65,28 @@ inline Eigen::VectorXd unwrapped(const Eigen::VectorXd& angle_deg, const std::ve
   return result;
 }
 
+/// Slopes of a column by its neighbours in a run, per second; 0 in a run of one row.
+inline Eigen::VectorXd slopes_of(const Eigen::VectorXd& values, const Eigen::VectorXd& t_s,
+                                 const std::vector<RunSpan>& runs) {
+  Eigen::VectorXd slopes = Eigen::VectorXd::Zero(values.size());
+  for (const RunSpan& run : runs)
+    for (Eigen::Index row = run.begin; row < run.end && run.size() > 1; ++row) {
+      const Eigen::Index before = std::max(run.begin, row - 1), after = std::min(run.end - 1, row + 1);
+      slopes[row] = (values[after] - values[before]) / (t_s[after] - t_s[before]);
+    }
+  return slopes;
+}
+
 /// Lets the model's servo make the command: of its target and of the motion that was measured.
 inline void close_loop(const Model& model, Inputs& inputs) {
   inputs.closed_loop = true;
-  const bool angle = inputs.judged(Signal::angle_deg), rate = inputs.judged(Signal::rate_dps);
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(inputs.rows());
-  inputs.seen_deg = angle ? held(inputs.of(Signal::angle_deg), inputs.runs) : none;
-  inputs.seen_dps = rate ? held(inputs.of(Signal::rate_dps), inputs.runs) : none;
-  for (const RunSpan& run : inputs.runs)
-    for (Eigen::Index row = run.begin; !rate && row < run.end; ++row) {  // slopes of the angle
-      const Eigen::Index before = std::max(run.begin, row - 1), after = std::min(run.end - 1, row + 1);
-      if (after > before)
-        inputs.seen_dps[row] =
-            (inputs.seen_deg[after] - inputs.seen_deg[before]) / (inputs.t_s[after] - inputs.t_s[before]);
-    }
+  const auto seen = [&](Signal signal) {
+    return inputs.judged(signal) ? held(inputs.of(signal), inputs.runs)
+                                 : Eigen::VectorXd(Eigen::VectorXd::Zero(inputs.rows()));
+  };
+  inputs.seen_deg = seen(Signal::angle_deg);
+  inputs.seen_dps = inputs.judged(Signal::rate_dps) ? seen(Signal::rate_dps)
+                                                    : slopes_of(inputs.seen_deg, inputs.t_s, inputs.runs);
   replay_servo(model, inputs);
 }
 
@@ -86,13 +95,9 @@ inline constexpr const char* heater_power_column = "heater_power";
 
 /// The names of a recording's columns, as sentences have them.
 inline std::string columns_in_words(const Recording& recording) {
-  constexpr std::size_t most = 12;
-  std::string names = "t_s";
-  for (std::size_t i = 0; i < recording.columns.size() && i < most; ++i)
-    names += ", " + recording.columns[i].name;
-  if (recording.columns.size() > most)
-    names += " and " + std::to_string(recording.columns.size() - most) + " more";
-  return names;
+  std::vector<std::string> names = {"t_s"};
+  for (const Column& column : recording.columns) names.push_back(column.name);
+  return listed(names, 13);
 }
 
 /// Takes from a recording what a plant of one's own needs, by the names of its columns.
@@ -174,9 +179,9 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
   else if (inputs.drive_A.size() > 0 && ohmic) inputs.heat = HeatSource::drive;
   if (model.has_thermal()) inputs.heat_W = take("heat_W");
   if (inputs.heat == HeatSource::none && inputs.heat_W.size() > 0) inputs.heat = HeatSource::recorded;
-  if (recording.has("current_A")) inputs.held_current_A = take("current_A");
+  inputs.held_current_A = take("current_A");
   plant::RecordedCharge(inputs.t_s, inputs.held_current_A, inputs.power_param).tell(inputs.runs);
-  if (recording.has("motor_C")) inputs.held_motor_C = take("motor_C");
+  inputs.held_motor_C = take("motor_C");
 
   auto& notes = inputs.not_judged;
   const auto lack = [&](const char* what, const char* column) {
@@ -234,7 +239,7 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
         inputs.measured[static_cast<std::size_t>(Signal::angle_deg)] =
             unwrapped(recording.column("angle_deg"), inputs.runs);
       else lack("angle_deg", "angle_deg");
-      if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
+      inputs.covariate_motor_C = take("motor_C");
       if (!commanded) {
         if (recording.has("current_A") && !model.has_current() && !model.has_thermal()) {
           inputs.effort_is_output = true;
@@ -246,7 +251,7 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
       }
     }
   }
-  if (inputs.bench() && recording.has("rate_dps")) inputs.covariate_rate_dps = take("rate_dps");
+  if (inputs.bench()) inputs.covariate_rate_dps = take("rate_dps");
   if (!inputs.bench() && !inputs.axis())
     notes.push_back({"", "the columns that were recorded are " + columns_in_words(recording)});
   return inputs;
@@ -276,9 +281,7 @@ inline std::vector<std::string> not_judged_in(std::initializer_list<const std::v
       if (std::find(names.begin(), names.end(), one->name) == names.end()) names.push_back(one->name);
     }
     if (count == all.size()) continue;
-    std::string where;
-    for (const std::string& name : names) where += (where.empty() ? "" : ", ") + name;
-    sentence = where + ": " + sentence;
+    sentence = listed(names) + ": " + sentence;
   }
   return sentences;
 }

@@ -177,14 +177,14 @@ inline std::vector<RunSpan> cut_at_long_pauses(const Eigen::VectorXd& t_s, const
   return cut_at(runs, starts, true);
 }
 
-/// Looks at the stamps: says where they vary or pause, and sets `starts` where a row follows on a pause over which
-/// a command did not stand still, and which the model notices.
-inline void check_stamps(const Model& model, FindingList& list, const std::vector<RunSpan>& runs,
-                         RowMask& starts) {
+/// Looks at the stamps, and says where they vary or pause.
+/// @return the rows that follow on a pause over which a command did not stand still, and which the model notices
+inline RowMask check_stamps(const Model& model, FindingList& list, const std::vector<RunSpan>& runs) {
   constexpr SegmentThresholds limit;
   const Recording& r = list.recording();
   std::vector<double> steps = intervals_of(r.t_s, runs);
-  if (steps.size() < 3) return;
+  RowMask cut(static_cast<std::size_t>(r.rows()), 0);
+  if (steps.size() < 3) return cut;
   const double usual = median_of(steps), longest = quantile_of(steps, 0.95),
                shortest = quantile_of(steps, 0.05);
   const bool jitters = longest > limit.jitter * usual || shortest < usual / limit.jitter;
@@ -197,7 +197,6 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
   for (const InputColumn& input : input_columns)
     if (input.pace == InputPace::command && r.has(input.name) && !is_ignored(model, input.name))
       commands.emplace_back(r.find(input.name), same_command_within(*r.find(input.name)));
-  RowMask cut(static_cast<std::size_t>(r.rows()), 0);
   double worst = 0.0;
   for (const RunSpan& run : runs)
     for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
@@ -207,7 +206,7 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
       for (const auto& [values, within] : commands)
         stood_still = stood_still && std::abs((*values)[i] - (*values)[i - 1]) <= within;
       if (stood_still) continue;
-      cut[static_cast<std::size_t>(i)] = starts[static_cast<std::size_t>(i)] = 1;
+      cut[static_cast<std::size_t>(i)] = 1;
       worst = std::max(worst, step);
     }
   list.add_rows(FindingKind::gap_in_stamps, Severity::note, "t_s", cut, FindingAction::segmented,
@@ -215,6 +214,7 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
                     " s where the usual interval is " + short_number(usual) +
                     " s) in which the inputs are unknown",
                 "log without losing rows");
+  return cut;
 }
 
 /// How fast an axis gets, but for a spike's rates, deg/s. 0 where the rate often reads the same twice: then it may well stand.
@@ -248,18 +248,19 @@ inline bool went_on_while_standing(const Eigen::VectorXd& angle, const Eigen::Ve
   return std::abs(went - jump) <= SegmentThresholds().went_on * std::abs(jump);
 }
 
-/// Says where an axis was put elsewhere between two rows, and sets `starts` there: swings of a pendulum that were held, let
+/// Says where an axis was put elsewhere between two rows: swings of a pendulum that were held, let
 /// go and logged on end. The rows before and after move slowly, or stand, at places that no motion between them joins.
 /// An angle that stood still while its rate went on as far was a sensor's that had stopped.
 /// @param angle     without wraps, degrees
 /// @param rate_dps  null: none was recorded
-inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const Eigen::VectorXd* rate_dps,
-                         const std::vector<RunSpan>& runs, RowMask& starts) {
+/// @return the rows that begin elsewhere
+inline RowMask check_resets(FindingList& list, const Eigen::VectorXd& angle, const Eigen::VectorXd* rate_dps,
+                            const std::vector<RunSpan>& runs) {
   constexpr SegmentThresholds limit;
   const Eigen::VectorXd& t_s = list.recording().t_s;
   const double least = limit.reset_noise * (white_scale(angle, runs) + quantum_of(angle));
   std::optional<double> fastest_dps;  // of the whole recording: asked where something jumps
-  RowMask cut(starts.size(), 0);
+  RowMask cut(static_cast<std::size_t>(angle.size()), 0);
   double largest = 0.0;
   for (const RunSpan& run : runs)
     for (Eigen::Index k = run.begin + limit.reset_rows; k + 1 + limit.reset_rows < run.end; ++k) {
@@ -283,13 +284,14 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
         is_reset = !went_on_while_standing(angle, *rate_dps, *fastest_dps, t_s, k, run.begin);
       }
       if (!is_reset) continue;
-      cut[static_cast<std::size_t>(k + 1)] = starts[static_cast<std::size_t>(k + 1)] = 1;
+      cut[static_cast<std::size_t>(k + 1)] = 1;
       largest = std::max(largest, std::abs(jump));
     }
   list.add_rows(FindingKind::position_reset, Severity::note, "angle_deg", cut, FindingAction::segmented,
                 "begin elsewhere (by up to " + short_number(largest) +
                     " deg) than the row before them, as no motion around them does: the axis was put there",
                 "give each swing a label in the column run");
+  return cut;
 }
 
 /// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.

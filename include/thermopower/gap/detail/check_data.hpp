@@ -43,14 +43,10 @@ inline Recording sampled(const Recording& recording, bool axis) {
     else rows.resize(static_cast<std::size_t>(begin));
   };
   for (const RunSpan& run : recording.spans()) {
-    if (!axis) {
-      add(run.begin, run.end, run.label);
-      continue;
-    }
-    for (Eigen::Index p = 0; p < parts; ++p) {
+    if (!axis) add(run.begin, run.end, run.label);
+    for (Eigen::Index p = 0; axis && p < parts; ++p) {
       const Eigen::Index begin = p * (recording.rows() - most / parts) / (parts - 1);
-      const Eigen::Index from = std::max(begin, run.begin), end = std::min(begin + most / parts, run.end);
-      if (from < end) add(from, end, run.label);
+      add(std::max(begin, run.begin), std::min(begin + most / parts, run.end), run.label);
     }
   }
   const auto count = static_cast<Eigen::Index>(rows.size());
@@ -176,20 +172,18 @@ inline bool is_column(plant::Need need) {
 inline double usual_size(const Parameter& parameter, const Model& model, const Recording& recording) {
   assert(!parameter.starts.empty() && parameter.lower <= parameter.upper);
   double value = parameter.starts.front();
-  const bool voltage_driven = model.axis && model.axis->voltage_driven();
-  const char* const input = parameter.starts_relative_to == plant::Input::drive_A
-                                ? (voltage_driven ? "voltage_V" : "drive_A")
+  const bool is_drive = parameter.starts_relative_to == plant::Input::drive_A;
+  const bool voltage_driven = is_drive && model.axis && model.axis->voltage_driven();
+  const char* const input = is_drive ? (voltage_driven ? "voltage_V" : "drive_A")
                             : parameter.starts_relative_to == plant::Input::power_param ? "power_param"
                             : parameter.starts_relative_to == plant::Input::supply_V    ? "supply_V"
                                                                                         : nullptr;
-  if (input != nullptr && !recording.has(input) && parameter.starts_relative_to == plant::Input::drive_A &&
-      model.has_servo()) {
-    value *= model.get("servo.limit_A");
-  } else if (input != nullptr && recording.has(input)) {
+  if (input != nullptr && recording.has(input)) {
     std::vector<double> sizes = finite_samples(recording.column(input).cwiseAbs());
     value *= quantile_of(sizes, 1.0);
-    if (parameter.starts_relative_to == plant::Input::drive_A && voltage_driven)
-      value /= model.axis->resistance_ohm;  // as a current at standstill
+    if (voltage_driven) value /= model.axis->resistance_ohm;  // as a current at standstill
+  } else if (is_drive && model.has_servo()) {
+    value *= model.get("servo.limit_A");
   }
   constexpr double of_range = 0.1;
   if (value == 0.0) value = of_range * (parameter.upper > 0.0 ? parameter.upper : parameter.lower);
@@ -263,11 +257,10 @@ inline void judge_effects(const Model& model, const Recording& recording, const 
     if (model.effects.count(entry.info.id) > 0) continue;
     const bool concerns = (entry.hooks.any_bench() && bench) || (entry.hooks.any_axis() && axis);
     if (!can_be_judged(entry, model, inputs)) {
-      std::string needs;
+      std::vector<std::string> needs;
       for (const plant::Need need : entry.info.needs)
-        if (is_column(need) && !recording.has(to_string(need)))
-          needs += (needs.empty() ? "" : ", ") + std::string(to_string(need));
-      if (concerns && !needs.empty()) report.need_columns.push_back(entry.info.id + ": " + needs);
+        if (is_column(need) && !recording.has(to_string(need))) needs.push_back(to_string(need));
+      if (concerns && !needs.empty()) report.need_columns.push_back(entry.info.id + ": " + listed(needs));
       continue;
     }
     Model with = model;

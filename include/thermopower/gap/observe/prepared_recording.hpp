@@ -164,15 +164,11 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   moves_ = model.has_axis();
   // A row that is lost stops no clock: it is read before the runs are cut there.
   read_the_clock(list);
-  RowMask starts(unknown_.size(), 0);
-  check_stamps(model, list, believed_.runs, starts);
-  starts = by(Rule::pauses, std::move(starts));
-  believed_.runs = cut_at(believed_.runs, starts, true);
+  believed_.runs = cut_at(believed_.runs, by(Rule::pauses, check_stamps(model, list, believed_.runs)), true);
   if (moves_ && believed_.has("angle_deg")) {
-    RowMask elsewhere(unknown_.size(), 0);
-    check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.find("rate_dps"),
-                 believed_.runs, elsewhere);
-    believed_.runs = cut_at(believed_.runs, by(Rule::resets, std::move(elsewhere)), false);
+    const Eigen::VectorXd angle = unwrapped(believed_.column("angle_deg"), believed_.runs);
+    const RowMask elsewhere = check_resets(list, angle, believed_.find("rate_dps"), believed_.runs);
+    believed_.runs = cut_at(believed_.runs, by(Rule::resets, elsewhere), false);
   }
   electrical_ = model.has_current() && recorded.has("power_param");
   drives_by_current_ = !recorded.has("power_param") && !recorded.has(heater_power_column) &&
