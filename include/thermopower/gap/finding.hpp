@@ -41,7 +41,7 @@ enum class FindingKind {
   wrong_sign,       ///< the simulation follows the data with the sign turned round
   swapped_columns,  ///< the simulation follows the data with two columns exchanged
   clock_shift,      ///< an input stamped by another clock than the outputs
-  lagging_output,  ///< a rate that comes behind its own angle, or the angle behind the rate: read earlier, or not judged
+  lagging_output,  ///< a rate that comes behind its angle, or the angle behind the rate: read earlier, or not judged
   sampled_command,  ///< a command that changed between the rows; its mean until the next row is used
   noisy_command,  ///< a command or current with noise that no motion or heat follows; the noise floor counts it
   // The experiment.

@@ -15,9 +15,9 @@
 #include <vector>
 
 /// @file clock.hpp
-/// Stamps that jitter around a clock. A sensor is read by a timer and stamped later, by whoever had time: the reading
-/// belongs to the timer's instant, and the stamp's error times the rate is an error of the angle that no model explains.
-/// Stamps can also be right and the timer late. The readings tell which.
+/// Stamps that jitter around a clock. A sensor is read by a timer and stamped later, by whoever had time: the
+/// reading belongs to the timer's instant, and the stamp's error times the rate is an error of the angle that no
+/// model explains. Stamps can also be right and the timer late. The readings tell which.
 
 namespace thermopower::gap::engine {
 

@@ -45,8 +45,8 @@ inline BeforeOthers before_others(const OrderedSamples& samples, std::size_t pla
   return {fitted[0], sd > 0.0 ? std::abs(fitted[0]) / sd : 0.0};
 }
 
-/// How far the first sample of a run lies from where those after it go back to, as a spike does; 0 where it does not. What begins
-/// with a steep fall is followed by one that lies off, too.
+/// How far the first sample of a run lies from where those after it go back to, as a spike does; 0 where it does not.
+/// A run that begins with a steep fall has a second sample that lies off, too.
 /// @param samples  of a run of a column that cannot jump
 /// @param noise    standard deviation of one of them
 /// @param sds      standard deviations from which on it is far

@@ -35,8 +35,8 @@ struct FrameThresholds {
   double caught_up = 0.6;  ///< of what was missed while a frame was repeated: the step after it
 };
 
-/// Whether a column shows that a frame is repeated: it hardly ever reads the same twice in a row, over all rows or over those
-/// in which it moves by a quantum a row. A slow column in coarse steps repeats by itself.
+/// Whether a column shows that a frame is repeated: it hardly ever reads the same twice in a row, over all rows or
+/// over those in which it moves by a quantum a row. A slow column in coarse steps repeats by itself.
 inline bool shows_frames(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
   constexpr FrameThresholds frames;
   constexpr double hardly_equal = MaskThresholds().hardly_equal;
@@ -54,7 +54,8 @@ inline bool shows_frames(const Eigen::VectorXd& values, const std::vector<RunSpa
   return moving >= frames.least_moving && equal < hardly_equal * moving;
 }
 
-/// The smallest step between neighbours that occurs twice: what one digit of a fine column is worth. 0 where there is none.
+/// The smallest step between neighbours that occurs twice: what one digit of a fine column is worth. 0 where there
+/// is none.
 inline double finest_step(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
   constexpr double same = 1e-3, nothing = 1e-9;
   std::vector<double> steps = step_sizes(values, runs);
@@ -67,8 +68,8 @@ inline double finest_step(const Eigen::VectorXd& values, const std::vector<RunSp
   return twice == steps.end() ? 0.0 : *twice;
 }
 
-/// Rests of an output that reads an exact 0 there: whether the others stand for as long meanwhile. Of a fine angle the noise
-/// shows at rest, too.
+/// Rests of an output that reads an exact 0 there: whether the others stand for as long meanwhile. Of a fine angle
+/// the noise shows at rest, too.
 class Rests {
 public:
   /// @param same  of each row: 2 where all outputs are the same as in the row before
@@ -128,8 +129,8 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       }
       same[static_cast<std::size_t>(i)] = equal == 0 ? 0 : known > 0 && equal == outputs.size() ? 2 : 1;
     }
-  // Noise of hundreds of digits repeats a value now and then, too, though no one step is often: as often as it takes any other
-  // small step.
+  // Noise of hundreds of digits repeats a value now and then, too, though no one step is often: as often as it
+  // takes any other small step.
   std::vector<double> quanta, scales, small_steps;
   for (const Eigen::VectorXd* one : outputs) {
     quanta.push_back(quantum_of(*one));
@@ -156,8 +157,8 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       speed[static_cast<std::size_t>(i)] = static_cast<unsigned char>(speed_class(fastest));
     }
   // How often all would be equal by chance. Over a whole log a column steps by none half as often as by one quantum
-  // either way; a log that rests for the most part would say so of a motion in which nothing ever stands. Among rows that
-  // move as fast, each of several columns says how often it stands while another one does not.
+  // either way; a log that rests for the most part would say so of a motion in which nothing ever stands. Among
+  // rows that move as fast, each of several columns says how often it stands while another one does not.
   struct Odds {
     double chance = 1.0, rows = 0.0, repeats = 0.0;
     bool repeats_are_rare() const { return chance * rows < FrameThresholds().by_chance * repeats; }
@@ -214,8 +215,8 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     }
     return to - from - (end - begin) >= 2 * around;
   };
-  // What stood catches up: a step as large as all that were missed, which were as large as those before and after, half and
-  // half. A motion that comes to rest meanwhile has larger ones before.
+  // A column that stood catches up: a step as large as all that were missed, which were as large as those before
+  // and after, half and half. A motion that comes to rest meanwhile has larger ones before.
   const auto catches_up = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
     if (end >= run.end) return false;
     constexpr Eigen::Index beside = around / 2;
@@ -256,8 +257,8 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
   return by(Rule::repeated_frames, std::move(mask));
 }
 
-/// What a column reads when its sensor says nothing: the value that most of its masked samples share; NaN where there is
-/// none.
+/// The reading of a column whose sensor says nothing: the value that most of its masked samples share; NaN where
+/// there is none.
 /// @param recorded  the column as it was
 /// @param believed  the same, NaN where masked
 inline double default_reading(const Eigen::VectorXd& recorded, const Eigen::VectorXd& believed) {
@@ -271,8 +272,8 @@ inline double default_reading(const Eigen::VectorXd& recorded, const Eigen::Vect
   return missing;
 }
 
-/// Rows in which every column reads its default and one of them, at least, lies far from the rows around: what stands out in one
-/// column is lost in all.
+/// Rows in which every column reads its default and one of them, at least, lies far from the rows around: what
+/// stands out in one column is lost in all.
 /// @param recorded  columns as they were
 /// @param defaults  what each of them reads when its sensor says nothing
 inline RowMask lost_frames(const std::vector<const Eigen::VectorXd*>& recorded,

@@ -257,8 +257,8 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
   return inputs;
 }
 
-/// What is not judged, each sentence once. One that holds of some recordings only names them: of the others the signal is
-/// judged.
+/// Sentences about signals that are not judged, each once. One that holds of some recordings only names them: of
+/// the others the signal is judged.
 /// @param parts  of the recordings
 inline std::vector<std::string> not_judged_in(std::initializer_list<const std::vector<Inputs>*> parts) {
   std::vector<const Inputs*> all;

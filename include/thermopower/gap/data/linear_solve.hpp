@@ -14,13 +14,13 @@
 #include <vector>
 
 /// @file linear_solve.hpp
-/// The systems of linear equations that a diagnosis solves. They have some tens of unknowns: plain loops are as fast as a library's
-/// decompositions, which cost each program that is compiled with this one several seconds.
+/// The systems of linear equations that a diagnosis solves. They have some tens of unknowns: plain loops are as
+/// fast as a library's decompositions, which cost each program that is compiled with this one several seconds.
 
 namespace thermopower::gap::engine {
 
-/// A x = b with one symmetric and positive definite A and any b, by A = L D L' (Golub & Van Loan 2013, 4.1). An unknown that
-/// A leaves no pivot for is 0.
+/// A x = b with one symmetric and positive definite A and any b, by A = L D L' (Golub & Van Loan 2013, 4.1). An
+/// unknown that A leaves no pivot for is 0.
 class SymmetricSystem {
 public:
   /// @param a  n by n, of which the lower triangle is read
@@ -74,8 +74,8 @@ inline void invert_symmetric(Eigen::MatrixXd& a) {
   }
 }
 
-/// The x that makes |A x - b| least, of several the shortest, with one A of any rank and any b: by Householder reflections
-/// with column pivoting (Golub & Van Loan 2013, 5.4 and 5.5).
+/// The x that makes |A x - b| least, of several the shortest, with one A of any rank and any b: by Householder
+/// reflections with column pivoting (Golub & Van Loan 2013, 5.4 and 5.5).
 class LeastSquares {
 public:
   /// @param a  m by n

@@ -16,8 +16,8 @@
 #include <vector>
 
 /// @file neighbour_motion.hpp
-/// Where a sample should lie, judging by the samples before and after it alone. A motion bends: a polynomial through enough
-/// neighbours follows the bend, and what it leaves of them says how far it can be trusted.
+/// Where a sample should lie, judging by the samples before and after it alone. A motion bends: a polynomial
+/// through enough neighbours follows the bend, and what it leaves of them says how far it can be trusted.
 
 namespace thermopower::gap::engine {
 
@@ -76,8 +76,8 @@ struct OrderedSamples {
   double off_four(std::size_t i) const { return off<4>(i, {-1, -2, 1, 2}); }
 };
 
-/// How far a sample lies from the polynomial through four neighbours, should one of the two beside it be far off itself: the
-/// farthest that any of three choices of them tells.
+/// How far a sample lies from the polynomial through four neighbours, should one of the two beside it be far off
+/// itself: the farthest that any of three choices of them tells.
 inline double off_good_neighbours(const OrderedSamples& samples, std::size_t i) {
   const double farthest = std::abs(samples.off_four(i));
   if (i < 3 || i + 3 >= samples.size()) return farthest;
@@ -85,15 +85,15 @@ inline double off_good_neighbours(const OrderedSamples& samples, std::size_t i) 
       {farthest, std::abs(samples.off<4>(i, {-2, -1, 2, 3})), std::abs(samples.off<4>(i, {-3, -2, 1, 2}))});
 }
 
-/// What neighbours say of a sample that takes no part in it.
+/// The motion of neighbours beside a sample that takes no part in it.
 struct NeighbourMotion {
   double off = 0.0;   ///< the sample less what they predict
   double gain = 1.0;  ///< standard deviation of `off` in white noise of 1
   double rest = 0.0;  ///< root mean square of what the polynomial leaves of them, per degree of freedom
 };
 
-/// The polynomial of least squares of some neighbours on either side, at the sample between them. Fewer coefficients than
-/// neighbours.
+/// The polynomial of least squares of some neighbours on either side, at the sample between them. Fewer
+/// coefficients than neighbours.
 /// @param beside  neighbours on either side (1..5), which there must be
 /// @param degree  of the polynomial (0..7), less than 2 beside - 1
 inline NeighbourMotion neighbour_motion(const OrderedSamples& samples, std::size_t i, std::size_t beside,
@@ -129,8 +129,8 @@ inline NeighbourMotion neighbour_motion(const OrderedSamples& samples, std::size
           left.norm() / std::sqrt(static_cast<double>(2 * beside - degree - 1))};
 }
 
-/// How far samples lie from the polynomials through two, four and six neighbours: what is least of them, over many samples, is
-/// noise. white_scale() knows straight lines alone, and takes the bend of a motion for noise.
+/// How far samples lie from the polynomials through two, four and six neighbours: what is least of them, over many
+/// samples, is noise. white_scale() knows straight lines alone, and takes the bend of a motion for noise.
 class OffNeighbours {
 public:
   /// Adds a sample, where it has so many neighbours.

@@ -85,8 +85,9 @@ void for_each_stretch(Eigen::Index from, Eigen::Index to, Is&& is, Use&& use) {
   }
 }
 
-/// Hands the rows of `count` finite samples that follow on each other inside a run to `use(const Eigen::Index* rows)`: rows next
-/// to each other, or, where a sensor speaks in so few rows that hardly any are, its samples in order.
+/// Hands the rows of `count` finite samples that follow on each other inside a run to `use(const Eigen::Index*
+/// rows)`: rows next to each other, or, where a sensor speaks in so few rows that hardly any are, its samples in
+/// order.
 template <std::size_t count, class Use>
 void for_each_in_order(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs, Use&& use) {
   constexpr double hardly_any = 0.1;
@@ -140,9 +141,9 @@ inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSp
   return median_of(list) / (normal_median * gain);
 }
 
-/// The grid on which most samples of a channel stand: the least distance of values that recur, where all of these lie
-/// a whole number of such distances apart. A logger that averages a coarse reading passes from one level to the next by values of
-/// its own, so that few neighbours differ by the quantum. 0 where there is none.
+/// The grid on which most samples of a channel stand: the least distance of values that recur, where all of these
+/// lie a whole number of such distances apart. A logger that averages a coarse reading passes from one level to the
+/// next by values of its own, so that few neighbours differ by the quantum. 0 where there is none.
 inline double grid_of_levels(const Eigen::VectorXd& values) {
   constexpr double most = 0.5, on_grid = 0.02;
   constexpr std::size_t recurs = 3, few_levels = 4;
@@ -166,8 +167,8 @@ inline double grid_of_levels(const Eigen::VectorXd& values) {
   return least;
 }
 
-/// The smallest step between neighbours that occurs again and again (in at least a hundredth of all steps), so that a few odd samples
-/// do not hide it. 0 where there is none: values that hardly ever differ by the same amount.
+/// The smallest step between neighbours that occurs again and again (in at least a hundredth of all steps), so that
+/// a few odd samples do not hide it. 0 where there is none: values that hardly ever differ by the same amount.
 /// @param same  share by which steps of one quantum differ, because few digits of them were logged
 inline double repeated_step(const Eigen::VectorXd& values, double same = 1e-3) {
   constexpr double often = 0.01, odd = 0.1;

@@ -80,8 +80,8 @@ public:
                  Spikes(values_, runs_, traits_, scale_, quantum_, position_step_).find());
   }
 
-  /// Stretches that jump away from the level before them and back to it. What climbs a slope and comes down one, as a temperature
-  /// that overshoots, does neither.
+  /// Stretches that jump away from the level before them and back to it. A temperature that overshoots
+  /// climbs a slope and comes down one: it does neither.
   RowMask bursts() {
     RowMask mask = empty();
     const double least = least_jump();
@@ -136,8 +136,8 @@ public:
     return taken(Rule::frozen, std::move(mask));
   }
 
-  /// Samples at the largest or the least value, where far more stand there than next to it, or that is none of the steps the
-  /// other samples come in.
+  /// Samples at the largest or the least value, where far more stand there than next to it, or that is none of the
+  /// steps the other samples come in.
   RowMask clipped() {
     RowMask mask = empty();
     const std::vector<double> list = finite_samples(values_);
@@ -177,8 +177,8 @@ private:
     if (one.value == 0.0) return false;
     if (one.count > 1 && is_between_steps(one.value, one.next))
       return true;  // no converter reads that: a limit is set
-    // A sensor that has more to tell stays at its end; what returns there for one row at a time is the beat of a clock and a
-    // steady motion.
+    // A sensor that has more to tell stays at its end; what returns there for one row at a time is the beat of a
+    // clock and a steady motion.
     const bool piles_up =
         one.count >= limit_.least_clipped &&
         static_cast<double>(one.count) >= limit_.clip_ratio * static_cast<double>(one.beside);
@@ -193,8 +193,9 @@ private:
     return 2 * denied(one.value) >= one.count || noise_would_show;
   }
 
-  /// Whether the rate says that the axis comes to rest, and starts again, wherever the column keeps this value: it is exactly 0
-  /// at most of these rows, and small before and after. The rate of a motion that goes on out of range is large there.
+  /// Whether the rate says that the axis comes to rest, and starts again, wherever the column keeps this value: it
+  /// is exactly 0 at most of these rows, and small before and after. The rate of a motion that goes on out of range
+  /// is large there.
   bool rests_at(double value) const {
     if (traits_.at_rest == nullptr) return false;
     std::ptrdiff_t still = 0;
@@ -221,8 +222,8 @@ private:
     return (values_.array() == value).select(missing, values_);
   }
 
-  /// Whether a value is none of those that the other samples, in steps of a quantum, take: off their grid by more than they are
-  /// themselves, whose quantum is known to a digit more or less.
+  /// Whether a value is none of those that the other samples, in steps of a quantum, take: off their grid by more
+  /// than they are themselves, whose quantum is known to a digit more or less.
   bool is_between_steps(double value, double neighbour) const {
     constexpr double on = 0.05, off = 0.02, times = 3.0,
                      nearly_all = 0.95;  // of a step; of the others' own; of the samples
@@ -250,8 +251,9 @@ private:
     return usual < on && off_step(value) > std::max(off, times * usual);
   }
 
-  /// Whether neighbours are often the same where they do not have this value. A temperature may have come to rest there: of it
-  /// all neighbours count, unless noise of many steps shows everywhere else, which it would at rest, too.
+  /// Whether neighbours are often the same where they do not have this value. A temperature may have come to rest
+  /// there: of it all neighbours count, unless noise of many steps shows everywhere else, which it would at rest,
+  /// too.
   bool stands_still_besides(double value) const {
     const Eigen::VectorXd others = others_than(value);
     const bool may_rest =
@@ -259,8 +261,8 @@ private:
     return !((may_rest ? equal_share_ : equal_share_of(step_sizes(others, runs_))) < limit_.hardly_equal);
   }
 
-  /// Noise that shows everywhere, where the column moves least, too. A joint that comes to rest without noise stands as well as a
-  /// sensor that stopped.
+  /// Noise that shows everywhere, where the column moves least, too. A joint that comes to rest without noise
+  /// stands as well as a sensor that stopped.
   double quiet_scale() const {
     constexpr Eigen::Index window = 8;
     constexpr double quietest = 0.1;  // of the windows in which it is not all the same
@@ -279,8 +281,8 @@ private:
     return traits_.at_rest != nullptr && !(std::abs((*traits_.at_rest)[row]) > rest_rate_);
   }
 
-  /// Whether a column that rarely stands stood, too, or was lost, from a row on: then frames were repeated, and it tells nothing. An
-  /// exact 0 is a rest.
+  /// Whether a column that rarely stands stood, too, or was lost, from a row on: then frames were repeated, and it
+  /// tells nothing. An exact 0 is a rest.
   bool repeats_too(const Eigen::VectorXd& other, Eigen::Index from, Eigen::Index to) const {
     double stood_at = missing;
     for (Eigen::Index row = from; row <= to; ++row) {
@@ -306,7 +308,8 @@ private:
     return off(to) <= allowed && (!std::isfinite(position[middle]) || off(middle) <= allowed);
   }
 
-  /// Whether the column that this one is the rate of moves by something else than `rate`, though rounded, between two rows.
+  /// Whether the column that this one is the rate of moves by something else than `rate`, though rounded, between
+  /// two rows.
   bool moves_otherwise(Eigen::Index from, Eigen::Index to, double rate) const {
     if (traits_.integral == nullptr) return false;
     constexpr double share = 0.1, quanta = 4.0;
@@ -348,7 +351,8 @@ private:
     return ways_between(from, to).farthest > clearly * visible_way();
   }
 
-  /// Whether an angle that stood from a row on reads at another one at once, about what its rate says it moved by meanwhile.
+  /// Whether an angle that stood from a row on reads at another one at once, about what its rate says it moved by
+  /// meanwhile.
   bool catches_up(Eigen::Index from, Eigen::Index to) const {
     constexpr double at_least = 0.5, at_most = 2.0;
     const double jump = values_[to] - values_[from], all = ways_between(from, to).all;
@@ -359,8 +363,9 @@ private:
   /// A motion of an angle that neither its noise nor its steps hide.
   double visible_way() const { return limit_.jump_scales * std::max(scale_, quantum_); }
 
-  /// Whether a temperature stands for longer than it does where it rests, judging by how often it then reads the same twice, and
-  /// how rarely it steps as far as it does after that. A slow one in coarse steps does stand, but its noise shows.
+  /// Whether a temperature stands for longer than it does where it rests, judging by how often it then reads the
+  /// same twice, and how rarely it steps as far as it does after that. A slow one in coarse steps does stand, but
+  /// its noise shows.
   bool rests_otherwise(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
     constexpr std::size_t around =
         6;  // samples before and after, over which one that rests moves by a quantum at most
@@ -382,7 +387,8 @@ private:
       still += 1.0;
       equal += own == 0.0 ? 1.0 : 0.0;
     }
-    // What only ever goes from one step to the next and back has less noise than a step: between two thresholds it stands.
+    // A column that only ever goes from one step to the next and back has less noise than a step: between two
+    // thresholds it stands.
     const bool is_quiet = wide < limit_.wide_steps * moves;
     const double share = is_quiet ? 1.0 : (equal + 1.0) / (still + 1.0);
     const double far = step > limit_.quanta * quantum_ ? std::log((steps + 1.0) / (as_far + 1.0)) : 0.0;
@@ -431,8 +437,8 @@ private:
     if (improbable && (quantum_ < quiet_scale_ || moves_otherwise(rows[begin], rows[end - 1], value)))
       return true;
     if (traits_.cannot_jump && rests_otherwise(rows, begin, end)) return true;
-    // Of a coarse thermometer only a reading that has to catch up tells that it stood. What steps, and may step, is held:
-    // a current that somebody sets.
+    // Of a coarse thermometer only a reading that has to catch up tells that it stood. A column
+    // that steps, and may step, is held: a current that somebody sets.
     return !is_set() && jumps_after(rows, end);
   }
 
@@ -440,7 +446,7 @@ private:
   bool jumps_after(const std::vector<Eigen::Index>& rows, std::size_t end) const {
     if (end == rows.size()) return false;
     const double value = values_[rows[end - 1]], jump = std::abs(values_[rows[end]] - value);
-    // What breaks away goes on as it began; what has stopped goes on from elsewhere.
+    // A joint that breaks away goes on as it began; a sensor that had stopped goes on from elsewhere.
     constexpr std::size_t after = 3;
     double next = 0.0;
     for (std::size_t k = end + 1; k < std::min(rows.size(), end + 1 + after); ++k)

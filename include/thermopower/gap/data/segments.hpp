@@ -76,7 +76,8 @@ inline bool is_ignored(const Model& model, const std::string& column) {
          model.effects.find("neighbour_heating") == model.effects.end();
 }
 
-/// How long an unknown input does not matter: a small part of the time constant of a body; 0 s of all that answers at once.
+/// How long an unknown input does not matter: a small part of the time constant of a body; 0 s of all that answers
+/// at once.
 inline double unnoticed_s(const Model& model) {
   if (model.own || model.has_axis()) return 0.0;
   double time_constant_s = 0.0;
@@ -133,7 +134,8 @@ inline std::vector<RunSpan> without(const std::vector<RunSpan>& runs, const RowM
   return result;
 }
 
-/// By how much two values of a command may differ that count as the same: then it is taken to have stood still between them.
+/// By how much two values of a command may differ that count as the same: then it is taken to have stood still
+/// between them.
 /// @param values  of the column, NaN where missing
 inline double same_command_within(const Eigen::VectorXd& values) {
   std::vector<double> list = finite_samples(values);
@@ -153,8 +155,8 @@ inline double long_pause(std::vector<double>& steps) {
   return SegmentThresholds().irregular_gap * quantile_of(steps, 0.95);
 }
 
-/// The interval from which time passed unrecorded, of such intervals. Where one in twenty is longer than a missing row would tell,
-/// the log has no interval of its own, and only far longer ones count.
+/// The interval from which time passed unrecorded, of such intervals. Where one in twenty is longer than a missing
+/// row would tell, the log has no interval of its own, and only far longer ones count.
 inline double shortest_pause(std::vector<double> steps) {
   constexpr SegmentThresholds limit;
   constexpr double normal_median = 0.6745;
@@ -217,15 +219,17 @@ inline RowMask check_stamps(const Model& model, FindingList& list, const std::ve
   return cut;
 }
 
-/// How fast an axis gets, but for a spike's rates, deg/s. 0 where the rate often reads the same twice: then it may well stand.
+/// How fast an axis gets, but for a spike's rates, deg/s. 0 where the rate often reads the same twice: then it may
+/// well stand.
 inline double fastest_that_rarely_stands(const Eigen::VectorXd& rate_dps, const std::vector<RunSpan>& runs) {
   std::vector<double> rates = finite_samples(rate_dps.cwiseAbs());
   const bool stands = !(equal_share_of(step_sizes(rate_dps, runs)) < MaskThresholds().rarely_equal);
   return rates.empty() || stands ? 0.0 : quantile_of(rates, SegmentThresholds().nearly_all);
 }
 
-/// Whether an axis went on by a jump while its angle stood still up to a row, the interval after that included, as far as its
-/// rate tells. Where that stood still, too, in a motion, or was not read, it may have gone as far as it is fast.
+/// Whether an axis went on by a jump while its angle stood still up to a row, the interval after that included, as
+/// far as its rate tells. Where that stood still, too, in a motion, or was not read, it may have gone as far as it
+/// is fast.
 /// @param fastest_dps  0: a rate that stands still tells as much as any other
 inline bool went_on_while_standing(const Eigen::VectorXd& angle, const Eigen::VectorXd& rate_dps,
                                    double fastest_dps, const Eigen::VectorXd& t_s, Eigen::Index row,
@@ -295,10 +299,10 @@ inline RowMask check_resets(FindingList& list, const Eigen::VectorXd& angle, con
 }
 
 /// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.
-/// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ; infinite: no hole
-///                  matters
-/// @param untold    samples that were taken away because they stood still or at the end of a range: the ends of a hole of them
-///                  are the same whatever was between
+/// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ; infinite:
+///                  no hole matters
+/// @param untold    samples that were taken away because they stood still or at the end of a range: the ends of a hole
+///                  of them are the same whatever was between
 /// @return the column with known holes filled
 inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::VectorXd& values,
                                    const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,

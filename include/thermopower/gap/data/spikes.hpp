@@ -17,13 +17,13 @@
 #include <vector>
 
 /// @file spikes.hpp
-/// Samples of one column that lie far from all around them: from the median of five, or from what the neighbours on either side
-/// make of the motion.
+/// Samples of one column that lie far from all around them: from the median of five, or from what the neighbours on
+/// either side make of the motion.
 
 namespace thermopower::gap::engine {
 
-/// Tells how far samples of one column stand out of their neighbours' motion. A corner, a step and a swing leave as much of the
-/// neighbours as of the sample, and are none.
+/// Tells how far samples of one column stand out of their neighbours' motion. A corner, a step and a swing leave as
+/// much of the neighbours as of the sample, and are none.
 class MotionSpikes {
 public:
   /// @param values  of the column, NaN where missing
@@ -108,8 +108,8 @@ private:
     return off;
   }
 
-  /// Whether a sample lies where those before it go on to, or those after it come from: a corner. So many and one more must agree
-  /// about the straight line, or the parabola.
+  /// Whether a sample lies where those before it go on to, or those after it come from: a corner. So many and one
+  /// more must agree about the straight line, or the parabola.
   /// @tparam through      samples that tell where it goes on: 2 of a line, 3 of a parabola
   /// @param within        how near it must lie
   /// @param within_noise  or how near, in the unit of the column, were there no noise on what the others tell
@@ -203,8 +203,9 @@ private:
     }
   }
 
-  /// Whether a sample is one of those in which a push dies away: each strays to the same side, by less than the one before it. A
-  /// joint that breaks away leaps and slows down within a few rows, and so does the current that sets a motor going.
+  /// Whether a sample is one of those in which a push dies away: each strays to the same side, by less than the one
+  /// before it. A joint that breaks away leaps and slows down within a few rows, and so does the current that sets
+  /// a motor going.
   bool dies_away(const OrderedSamples& samples, std::size_t i) const {
     constexpr std::size_t lasts = 3, level_after = 6;
     constexpr double least_share = 0.15, clearly = 4.0;  // of the one before; noise scales and quanta
@@ -228,8 +229,8 @@ private:
     return false;
   }
 
-  /// Raises how far samples lie to how far they lie from their neighbours' motion, where their rate, or their angle, does not bear
-  /// them out.
+  /// Raises how far samples lie to how far they lie from their neighbours' motion, where their rate, or their
+  /// angle, does not bear them out.
   void far_from_the_motion(const Eigen::VectorXd& values, const RunSpan& run, const OrderedSamples& samples,
                            std::vector<double>& far) const {
     const std::vector<double> off = motion_.off(samples);
@@ -241,7 +242,8 @@ private:
     }
   }
 
-  /// Raises how far the first sample of a run lies. A body remembers what it starts from: there less is far than elsewhere.
+  /// Raises how far the first sample of a run lies. A body remembers what it starts from: there less is far than
+  /// elsewhere.
   void far_from_the_beginning(const OrderedSamples& samples, std::vector<double>& far) const {
     const double off =
         first_reading_off(samples, std::max(scale_, quantum_ / std::sqrt(12.0)), limit_.first_sds);
@@ -264,10 +266,11 @@ private:
     for (std::size_t i = 0; i < count; ++i) {
       double off = off_median[i];
       if (!(off > least)) continue;
-      // What continues either side in a straight line is the corner of a motion and no spike.
+      // A sample that continues either side in a straight line is the corner of a motion, and not a spike.
       if (i >= 2) off = std::min(off, std::abs(at[i] - 2.0 * at[i - 1] + at[i - 2]));
       if (i + 2 < count) off = std::min(off, std::abs(at[i] - 2.0 * at[i + 1] + at[i + 2]));
-      // The top of a fast swing lies far from the median, too, and where rows are lost a straight line does not continue.
+      // The top of a fast swing lies far from the median, too, and where rows are lost a straight line does not
+      // continue.
       if (i >= 2 && i + 2 < count) off = std::min(off, off_good_neighbours(samples, i));
       // Nothing lies beyond an end, where motions begin, and near it too few bends tell how sharply: there a parabola
       // counts, too.
@@ -297,8 +300,8 @@ private:
     return mask;
   }
 
-  /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by; at the ends of a
-  /// run seen from one side.
+  /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by; at
+  /// the ends of a run seen from one side.
   bool is_motion(const Eigen::VectorXd& values, const RunSpan& run, Eigen::Index row, double off) const {
     if (traits_.t_s == nullptr || run.size() < 3) return false;
     const Eigen::VectorXd& t_s = *traits_.t_s;
@@ -310,7 +313,8 @@ private:
       const bool is_inside = to - from == 2;
       const double share = is_inside ? 2.0 / 3.0 : 0.5;
       const double within = share * (is_inside ? limit_.confirmed : limit_.confirmed_at_end) * off;
-      // An angle whose own noise is a rate of that size confirms nothing; where it does not deny it, a run begins at rest.
+      // An angle whose own noise is a rate of that size confirms nothing; where it does not deny it, a run begins
+      // at rest.
       const double noise = std::sqrt(2.0) * position_step_ / (t_s[to] - t_s[from]);
       const bool may_rest = !is_inside && std::abs(values[row]) < limit_.spike_scales * scale_;
       if (noise > within / 3.0 && !may_rest) return false;
@@ -334,7 +338,8 @@ private:
   ColumnTraits traits_;
   double quantum_, scale_, position_step_;
   MotionSpikes motion_;
-  // Rows that a rate and its angle agree about, while all neighbours are still there: without them motion would look like a spike.
+  // Rows that a rate and its angle agree about, while all neighbours are still there: without them motion would
+  // look like a spike.
   RowMask median_confirmed_, motion_confirmed_;
 };
 

@@ -13,9 +13,9 @@ namespace thermopower::gap {
 
 /// Takes the last part of a recording away as held-out data.
 ///
-/// Whole excitation segments are held out: the last runs where there are several, else the rows from the
-/// change of excitation (a step of `power_param`, or of a heater's `target_C`) that is nearest to the wanted fraction, looked for within a
-/// tenth of the rows; never interleaved samples.
+/// Whole excitation segments are held out: the last runs where there are several, else the rows from the change of
+/// excitation (a step of `power_param`, or of a heater's `target_C`) that is nearest to the wanted fraction, looked
+/// for within a tenth of the rows; never interleaved samples.
 inline std::pair<Recording, Recording> split(const Recording& recording, double held_out_fraction) {
   const Eigen::Index rows = recording.rows();
   const Eigen::Index wanted =

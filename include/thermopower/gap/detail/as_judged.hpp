@@ -113,9 +113,9 @@ public:
     refer(attempt, segments, yardstick);
   }
 
-  /// What held-out motion says against candidates, nats: how much worse than the best of those with a name they predict it from
-  /// starts as measured. A window counts once, since its errors go together. In a closed loop a heavy axis predicts motion well, and
-  /// true causes somewhat worse: that far nothing is said.
+  /// The evidence of held-out motion against candidates, in nats: how much worse than the best of those with a name
+  /// they predict it from starts as measured. A window counts once, since its errors go together. In a closed loop
+  /// a heavy axis predicts motion well, and true causes somewhat worse: that far nothing is said.
   Eigen::VectorXd lost_in_motion(const std::vector<Candidate>& candidates) const {
     constexpr double somewhat_worse = 1.5;  // times; cogging of a real motor under a stiff loop makes 1.3
     const std::vector<Segment> segments = posing_.judged(held_out_);
@@ -131,7 +131,8 @@ public:
     return (nats.array() - unheard).max(0.0);
   }
 
-  /// Whether a candidate predicts held-out motion so much worse than the model as configured that it closes nothing there.
+  /// Whether a candidate predicts held-out motion so much worse than the model as configured that it closes nothing
+  /// there.
   bool opens_the_gap(const Candidate& one) const {
     constexpr double times = 3.0;  // a wrist behind a torque sensor makes 2.3 with its true friction
     const std::vector<Segment> segments = posing_.judged(held_out_);
@@ -180,8 +181,9 @@ private:
     return {sigma, floor_of(witness, errors, sigma, segments, catalogue_, FirstReadings::within_their_noise)};
   }
 
-  /// The errors of a model in some segments, in units of the noise floor. Of two explanations one may fit starts that nobody
-  /// measures: then both may move the measured one within its noise, or a wrong first reading speaks for hidden nodes.
+  /// The errors of a model in some segments, in units of the noise floor. Of two explanations one may fit starts
+  /// that nobody measures: then both may move the measured one within its noise, or a wrong first reading speaks
+  /// for hidden nodes.
   SignalSums sums_of(const Model& model, const std::vector<Segment>& segments,
                      const Yardstick& yardstick) const {
     const Errors own = errors_of(model, segments, catalogue_, &yardstick.sigma);

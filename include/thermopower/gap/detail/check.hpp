@@ -34,8 +34,9 @@ inline void append(std::vector<Finding>& findings, const std::vector<Finding>& m
   findings.insert(findings.end(), more.begin(), more.end());
 }
 
-/// Reads a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate, earlier by as much
-/// where that is less than half a row, or where the two differ by more than the lag; else leaves it out.
+/// Reads a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate,
+/// earlier by as much where that is less than half a row, or where the two differ by more than the lag; else leaves
+/// it out.
 inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::vector<Finding>& findings) {
   if (!model.has_axis()) return;
   RateLag rate_lag;
@@ -60,7 +61,7 @@ inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::
   }
 }
 
-/// Chooses the units of all recordings. What else the columns say is asked only where their units are right.
+/// Chooses the units of all recordings. Other questions to the columns are asked only where their units are right.
 /// @param spans  given_spans() of the recordings in training, then of those held out
 inline void check_units(const Model& model, CheckedRecordings& checked,
                         const std::vector<std::vector<RunSpan>>& spans, const Catalogue& catalogue,
@@ -120,8 +121,9 @@ inline const Eigen::VectorXd& command_of(const Model& model, const PreparedRecor
   return plant::command(one.inputs(), model.axis->voltage_driven());
 }
 
-/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show which, by
-/// what the motion makes of earlier commands in the training recordings. Comes before what is said of the command between the rows.
+/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show
+/// which, by what the motion makes of earlier commands in the training recordings. Comes before what is said of the
+/// command between the rows.
 inline void read_what_drove_before(const Model& model, CheckedRecordings& checked) {
   if (!model.has_axis()) return;
   DrivenBefore before;
@@ -209,8 +211,8 @@ inline void read_current_noise(const Model& model, CheckedRecordings& checked,
   }
 }
 
-/// Lets the power of a bench be switched when the training recordings say that it was and the held-out ones do not say otherwise, in
-/// all recordings.
+/// Lets the power of a bench be switched when the training recordings say that it was and the held-out ones do not
+/// say otherwise, in all recordings.
 inline void read_when_switched(const Model& model, CheckedRecordings& checked, const Catalogue& catalogue,
                                std::vector<Finding>& findings) {
   if (model.own || !model.has_thermal()) return;

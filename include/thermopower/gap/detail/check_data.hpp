@@ -116,7 +116,7 @@ public:
     base_ = of(model);
   }
 
-  /// What was measured of each signal.
+  /// The measured part of each signal.
   const std::vector<SignalReport>& signals() const { return signals_; }
   /// The model's own response.
   const Eigen::VectorXd& base() const { return base_; }

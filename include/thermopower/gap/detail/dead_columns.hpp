@@ -16,8 +16,8 @@
 #include <vector>
 
 /// @file dead_columns.hpp
-/// Outputs that stand still over a whole recording in which what drives them moves. Any gain or offset explains such a column,
-/// and nothing in it tells which: it is left out.
+/// Outputs that stand still over a whole recording in which what drives them moves. Any gain or offset explains
+/// such a column, and nothing in it tells which: it is left out.
 
 namespace thermopower::gap::engine {
 
@@ -30,14 +30,14 @@ struct DeadColumnThresholds {
   double tail = 0.02;               ///< of a command's samples at either end are not counted: spikes
 };
 
-/// What drives an output, and how far it goes.
+/// The column that drives an output, and how far it goes.
 struct DrivingColumn {
   std::string name;      ///< of the column
   double range = 0.0;    ///< that it goes through
   double largest = 0.0;  ///< magnitude
 };
 
-/// What drives an output of a recording; a range of 0 where nothing does.
+/// The column that drives an output of a recording; a range of 0 where none does.
 inline DrivingColumn driving(const Model& model, const Inputs& inputs, Signal signal) {
   const bool current = signal == Signal::current_A;
   assert(current || inputs.closed_loop || model.axis);
@@ -61,9 +61,9 @@ inline bool stands_still(const Eigen::VectorXd& values) {
          std::all_of(list.begin(), list.end(), [&](double one) { return one == list.front(); });
 }
 
-/// Leaves outputs out that stand still in a recording though what drives them moves: a sensor that nobody reads, or an axis that
-/// static friction holds throughout. Where nothing is left to judge in the training recordings, or in those held out, that is an
-/// error. Said of a column so, what else was found in it says nothing.
+/// Leaves outputs out that stand still in a recording though what drives them moves: a sensor that nobody reads, or
+/// an axis that static friction holds throughout. Where nothing is left to judge in the training recordings, or in
+/// those held out, that is an error. Said of a column so, what else was found in it says nothing.
 /// @param as_recorded  it is said, and nothing is left out
 inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checked, bool as_recorded,
                                    std::vector<Finding>& findings) {
@@ -87,8 +87,8 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
     all.largest = std::max(all.largest, by.largest);
     if (!stands_still(inputs.of(signal))) all.least_that_moves = std::min(all.least_that_moves, by.largest);
   });
-  // A drive that moves it elsewhere moves it here. An axis that is driven less may be held by friction, and its standstill
-  // tells how large that is.
+  // A drive that moves it elsewhere moves it here. An axis that is driven less may be held by friction, and its
+  // standstill tells how large that is.
   const auto must_move = [&](const Inputs& inputs, Signal signal, const DrivingColumn& by) {
     constexpr DeadColumnThresholds limit;
     const auto rests = [&](Signal one) { return !inputs.judged(one) || stands_still(inputs.of(one)); };

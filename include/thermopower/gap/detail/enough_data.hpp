@@ -15,9 +15,9 @@
 
 namespace thermopower::gap::engine {
 
-/// The least data that anything is said of. Whoever asks for less is told what to record, and not what fits a handful of rows. A
-/// cause wants more (DecisionThresholds::least_readings): a table of some ten readings by hand can tell that there is a gap.
-/// Held by tests/gap/data/enough_data_test.cpp.
+/// The least data that anything is said of. Whoever asks for less is told what to record, and not what fits a
+/// handful of rows. A cause wants more (DecisionThresholds::least_readings): a table of some ten readings by hand
+/// can tell that there is a gap. Held by tests/gap/data/enough_data_test.cpp.
 struct LeastData {
   /// Rows of a run. A simulation starts on the first one, which then tells nothing of it; in a run of two there is one
   /// difference, and an effect that only acts on starts (a lag, a second mass) explains them all.
@@ -26,7 +26,7 @@ struct LeastData {
   double windows = 2.0;        ///< of an axis, in time: one alone has no other to agree with
 };
 
-/// What of a signal a simulation can be held against in a part of the data.
+/// How much of a signal a simulation can be held against in a part of the data.
 struct ReadingCount {
   Eigen::Index told = 0;      ///< in runs that are long enough, but for the first one of each
   Eigen::Index recorded = 0;  ///< all of them
@@ -61,7 +61,7 @@ inline std::string part_in_words(const std::vector<Inputs>& part, bool held_out)
   return (held_out ? "the held-out rows" : "the training rows") + (words.empty() ? "" : " of " + words);
 }
 
-/// What is lacking in a part of the data; empty where there is enough. `mend` receives what to do about it.
+/// The data that are lacking in a part of the data; empty where there is enough. `mend` receives what to do about it.
 /// @param horizon_s  over which simulations of an axis are judged
 inline std::string lacking(const Model& model, const std::vector<Inputs>& part, bool held_out,
                            double horizon_s, std::string& mend) {
@@ -112,8 +112,9 @@ inline std::string lacking(const Model& model, const std::vector<Inputs>& part, 
                    : "");
 }
 
-/// Whether there is enough to diagnose: data that can be believed, enough readings of some signal in either part (LeastData), and
-/// a row that a simulation can start from. Else says in `result` what is lacking, and what would mend it.
+/// Whether there is enough to diagnose: data that can be believed, enough readings of some signal in either part
+/// (LeastData), and a row that a simulation can start from. Else says in `result` what is lacking, and what would
+/// mend it.
 /// @param horizon_s  over which simulations are judged
 inline bool enough_data(Diagnosis& result, const Model& model, const std::vector<Inputs>& train,
                         const std::vector<Inputs>& held_out, double horizon_s) {
