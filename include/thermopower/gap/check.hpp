@@ -17,6 +17,14 @@ struct CheckedRecordings {
   std::vector<PreparedRecording> train;     ///< to find and to fit
   std::vector<PreparedRecording> held_out;  ///< to judge on
   std::vector<Finding> findings;            ///< those that decide first, then recording by recording
+
+  /// All recordings, those in training first.
+  std::vector<PreparedRecording*> all() {
+    std::vector<PreparedRecording*> list;
+    for (std::vector<PreparedRecording>* const part : {&train, &held_out})
+      for (PreparedRecording& one : *part) list.push_back(&one);
+    return list;
+  }
 };
 
 /// How to check.

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -39,7 +41,7 @@ enum class FindingKind {
   wrong_sign,       ///< the simulation follows the data with the sign turned round
   swapped_columns,  ///< the simulation follows the data with two columns exchanged
   clock_shift,      ///< an input stamped by another clock than the outputs
-  lagging_output,  ///< a rate that comes behind its own angle, or the angle behind the rate: read earlier, or not judged
+  lagging_output,  ///< a rate that comes behind its angle, or the angle behind the rate: read earlier, or not judged
   sampled_command,  ///< a command that changed between the rows; its mean until the next row is used
   noisy_command,  ///< a command or current with noise that no motion or heat follows; the noise floor counts it
   // The experiment.
@@ -58,79 +60,19 @@ enum class FindingKind {
 
 /// The kind as reports spell it.
 inline const char* to_string(FindingKind kind) {
-  switch (kind) {
-    case FindingKind::irregular_stamps:
-      return "irregular_stamps";
-    case FindingKind::jittering_stamps:
-      return "jittering_stamps";
-    case FindingKind::gap_in_stamps:
-      return "gap_in_stamps";
-    case FindingKind::empty_column:
-      return "empty_column";
-    case FindingKind::constant_column:
-      return "constant_column";
-    case FindingKind::missing_samples:
-      return "missing_samples";
-    case FindingKind::unknown_input:
-      return "unknown_input";
-    case FindingKind::spiked_samples:
-      return "spiked_samples";
-    case FindingKind::glitched_samples:
-      return "glitched_samples";
-    case FindingKind::repeated_frames:
-      return "repeated_frames";
-    case FindingKind::interpolated_samples:
-      return "interpolated_samples";
-    case FindingKind::held_samples:
-      return "held_samples";
-    case FindingKind::separate_samples:
-      return "separate_samples";
-    case FindingKind::frozen_samples:
-      return "frozen_samples";
-    case FindingKind::clipped_samples:
-      return "clipped_samples";
-    case FindingKind::impossible_samples:
-      return "impossible_samples";
-    case FindingKind::wrapped_angle:
-      return "wrapped_angle";
-    case FindingKind::position_reset:
-      return "position_reset";
-    case FindingKind::coarse_quantum:
-      return "coarse_quantum";
-    case FindingKind::wrong_unit:
-      return "wrong_unit";
-    case FindingKind::wrong_sign:
-      return "wrong_sign";
-    case FindingKind::swapped_columns:
-      return "swapped_columns";
-    case FindingKind::common_factor:
-      return "common_factor";
-    case FindingKind::detached_sensor:
-      return "detached_sensor";
-    case FindingKind::clock_shift:
-      return "clock_shift";
-    case FindingKind::lagging_output:
-      return "lagging_output";
-    case FindingKind::sampled_command:
-      return "sampled_command";
-    case FindingKind::noisy_command:
-      return "noisy_command";
-    case FindingKind::sampled_too_slowly:
-      return "sampled_too_slowly";
-    case FindingKind::never_driven:
-      return "never_driven";
-    case FindingKind::held_out_not_excited:
-      return "held_out_not_excited";
-    case FindingKind::held_out_in_training:
-      return "held_out_in_training";
-    case FindingKind::recording_given_twice:
-      return "recording_given_twice";
-    case FindingKind::text_column_ignored:
-      return "text_column_ignored";
-    case FindingKind::no_final_line_break:
-      return "no_final_line_break";
-  }
-  return "";
+  static constexpr const char* names[] = {
+      "irregular_stamps",     "jittering_stamps",     "gap_in_stamps",         "empty_column",
+      "constant_column",      "missing_samples",      "unknown_input",         "spiked_samples",
+      "glitched_samples",     "repeated_frames",      "held_samples",          "interpolated_samples",
+      "separate_samples",     "frozen_samples",       "clipped_samples",       "impossible_samples",
+      "position_reset",       "wrapped_angle",        "coarse_quantum",        "wrong_unit",
+      "wrong_sign",           "swapped_columns",      "clock_shift",           "lagging_output",
+      "sampled_command",      "noisy_command",        "sampled_too_slowly",    "never_driven",
+      "held_out_not_excited", "held_out_in_training", "recording_given_twice", "text_column_ignored",
+      "no_final_line_break",  "common_factor",        "detached_sensor"};
+  static_assert(std::size(names) == static_cast<std::size_t>(FindingKind::detached_sensor) + 1,
+                "each kind has a name");
+  return names[static_cast<std::size_t>(kind)];
 }
 
 /// How much a finding matters.
@@ -142,15 +84,8 @@ enum class Severity {
 
 /// The severity as reports spell it.
 inline const char* to_string(Severity severity) {
-  switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      return "error";
-  }
-  return "";
+  constexpr const char* names[] = {"note", "warning", "error"};
+  return names[static_cast<std::size_t>(severity)];
 }
 
 /// The check's answer to a finding.
@@ -162,15 +97,8 @@ enum class FindingAction {
 
 /// The action as reports spell it.
 inline const char* to_string(FindingAction action) {
-  switch (action) {
-    case FindingAction::none:
-      return "none";
-    case FindingAction::masked:
-      return "masked";
-    case FindingAction::segmented:
-      return "segmented";
-  }
-  return "";
+  constexpr const char* names[] = {"none", "masked", "segmented"};
+  return names[static_cast<std::size_t>(action)];
 }
 
 /// Half-open range of rows [begin, end), counted from 0 over the data rows of the recording as it was given.

@@ -5,7 +5,7 @@
 
 #include <cmath>
 #include <limits>
-#include <thermopower/gap/data/jackknife.hpp>
+#include <thermopower/gap/data/normal_equations.hpp>
 #include <vector>
 
 #include "../../catch.hpp"

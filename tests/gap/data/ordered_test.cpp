@@ -4,9 +4,7 @@
 // What is found without sorting a whole column is what sorting it finds.
 #include "../../catch.hpp"
 
-#include <thermopower/gap/data/extremes.hpp>
 #include <thermopower/gap/data/robust.hpp>
-#include <thermopower/gap/data/sorted_from_below.hpp>
 #include <thermopower/gap/where/missing_quantity.hpp>
 
 #include <algorithm>
@@ -66,23 +64,6 @@ double quantum_by_sorting(const std::vector<double>& values) {
 }
 
 }  // namespace
-
-TEST_CASE("a list sorted from below reads as the sorted one, wherever it is read first") {
-  Generator random(1);
-  for (const std::size_t size : {1u, 2u, 255u, 256u, 257u, 1000u, 20000u})
-    for (const double quantum : {0.0, 0.3}) {
-      std::vector<double> list = column(size, quantum, 0.0, random);
-      SortedFromBelow sorted(list);
-      REQUIRE(sorted.size() == size);
-      std::sort(list.begin(), list.end());
-      for (int k = 0; k < 40; ++k) {
-        const std::size_t at = k < 3 ? 0 : random() % size;
-        CHECK(sorted[at] == list[at]);
-      }
-      CHECK(sorted[size - 1] == list.back());
-      CHECK(sorted[size / 2] == list[size / 2]);
-    }
-}
 
 TEST_CASE("a step that repeats is the one that sorting all steps finds") {
   Generator random(2);

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/jackknife.hpp>
+#include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/fit/signal_sums.hpp>
 
 #include <algorithm>

@@ -8,16 +8,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
 /// @file clock.hpp
-/// Stamps that jitter around a clock. A sensor is read by a timer and stamped later, by whoever had time: the reading
-/// belongs to the timer's instant, and the stamp's error times the rate is an error of the angle that no model explains.
-/// Stamps can also be right and the timer late. The readings tell which.
+/// Stamps that jitter around a clock. A sensor is read by a timer and stamped later, by whoever had time: the
+/// reading belongs to the timer's instant, and the stamp's error times the rate is an error of the angle that no
+/// model explains. Stamps can also be right and the timer late. The readings tell which.
 
 namespace thermopower::gap::engine {
 
@@ -47,81 +47,52 @@ struct ClockStamps {
 inline std::optional<ClockStamps> clock_of(const Eigen::VectorXd& t_s, const RunSpan& run) {
   constexpr ClockThresholds limit;
   if (run.size() < limit.least_rows) return std::nullopt;
-  const auto stamp = [&](std::size_t i) { return t_s[run.begin + static_cast<Eigen::Index>(i)]; };
-  std::vector<double> tick(static_cast<std::size_t>(run.size()), 0.0), steps = step_sizes(t_s, {run});
+  const auto stamp = t_s.segment(run.begin, run.size()).array();
+  std::vector<double> steps = step_sizes(t_s, {run});
   ClockStamps clock;
   clock.period_s = median_of(steps);
   if (!(clock.period_s > 0.0)) return std::nullopt;
-  for (std::size_t i = 1; i < tick.size(); ++i)
-    tick[i] = tick[i - 1] + std::max(1.0, std::round((stamp(i) - stamp(i - 1)) / clock.period_s));
+  Eigen::ArrayXd tick = Eigen::ArrayXd::Zero(run.size());
+  for (Eigen::Index i = 1; i < tick.size(); ++i)
+    tick[i] = tick[i - 1] + std::max(1.0, std::round((stamp[i] - stamp[i - 1]) / clock.period_s));
   const double count = static_cast<double>(run.size());
   double phase_s = 0.0;
   constexpr int rounds = 3;  // a better period may put a row on another tick
   for (int round = 0; round < rounds; ++round) {
-    double mean_tick = 0.0, mean_s = 0.0;
-    for (std::size_t i = 0; i < tick.size(); ++i) {
-      mean_tick += tick[i] / count;
-      mean_s += stamp(i) / count;
-    }
-    double product = 0.0, square = 0.0;
-    for (std::size_t i = 0; i < tick.size(); ++i) {
+    double mean_tick = 0.0, mean_s = 0.0, product = 0.0, square = 0.0;
+    for (Eigen::Index i = 0; i < tick.size(); ++i) mean_tick += tick[i] / count, mean_s += stamp[i] / count;
+    for (Eigen::Index i = 0; i < tick.size(); ++i) {
       const double off = tick[i] - mean_tick;
-      product += off * (stamp(i) - mean_s);
+      product += off * (stamp[i] - mean_s);
       square += off * off;
     }
     clock.period_s = product / square;
     phase_s = mean_s - clock.period_s * mean_tick;
-    for (std::size_t i = 0; i < tick.size(); ++i) tick[i] = std::round((stamp(i) - phase_s) / clock.period_s);
+    tick = ((stamp - phase_s) / clock.period_s).round();
   }
-  clock.t_s.resize(run.size());
-  std::vector<double> errors;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < tick.size(); ++i) {
-    if (i > 0 && !(tick[i] > tick[i - 1])) return std::nullopt;
-    const double at_s = phase_s + clock.period_s * tick[i], error = stamp(i) - at_s;
-    clock.t_s[static_cast<Eigen::Index>(i)] = at_s;
-    errors.push_back(std::abs(error));
-    squares += error * error;
-  }
-  clock.jitter_s = std::sqrt(squares / count);
+  if (std::adjacent_find(tick.begin(), tick.end(), std::greater_equal<>()) != tick.end()) return std::nullopt;
+  clock.t_s = phase_s + clock.period_s * tick;
+  const Eigen::ArrayXd errors = stamp - clock.t_s.array();
+  clock.jitter_s = std::sqrt(errors.square().mean());
+  std::vector<double> sizes = finite_samples(errors.abs());
   if (clock.jitter_s < limit.least_jitter * clock.period_s ||
-      quantile_of(errors, 0.99) > limit.most_jitter * clock.period_s)
+      quantile_of(sizes, 0.99) > limit.most_jitter * clock.period_s)
     return std::nullopt;
   return clock;
-}
-
-/// How far a reading lies from the cubic through two neighbours on either side, if these are its instants.
-inline double off_its_neighbours(const std::array<double, 5>& at_s, const std::array<double, 5>& values) {
-  std::array<double, 4> where{}, what{};
-  for (std::size_t i = 0, k = 0; i < 5; ++i) {
-    if (i == 2) continue;
-    where[k] = at_s[i] - at_s[2];
-    what[k++] = values[i];
-  }
-  return values[2] - polynomial_at_zero(where, what);
 }
 
 /// Collects how much nearer to their neighbours readings lie at one list of instants than at another.
 class SmootherAt {
 public:
-  /// Adds a run's readings. @param recorded, clock  instants of the run's rows
+  /// Adds a run's readings. @param recorded, clock  instants of all rows
   void add(const Eigen::VectorXd& values, const RunSpan& run, const Eigen::VectorXd& recorded,
            const Eigen::VectorXd& clock) {
-    assert(recorded.size() >= run.size() && clock.size() >= run.size());
+    const OrderedSamples as_recorded(values, &recorded, run), at_ticks(values, &clock, run);
     std::vector<std::array<double, 2>> both;
     std::vector<double> sizes;
-    for (Eigen::Index i = 2; i + 2 < run.size(); ++i) {
-      std::array<double, 5> at{}, tick{}, value{};
-      bool whole = true;
-      for (std::size_t k = 0; k < 5; ++k) {
-        const Eigen::Index row = i - 2 + static_cast<Eigen::Index>(k);
-        value[k] = values[run.begin + row];
-        at[k] = recorded[row];
-        tick[k] = clock[row];
-        whole = whole && std::isfinite(value[k]);
-      }
-      if (!whole) continue;
-      both.push_back({std::abs(off_its_neighbours(at, value)), std::abs(off_its_neighbours(tick, value))});
+    for (std::size_t i = 2; i + 2 < as_recorded.size(); ++i) {
+      if (as_recorded.rows[i + 2] - as_recorded.rows[i - 2] != 4) continue;  // a sample is missing
+      both.push_back({std::abs(as_recorded.off_four(i)), std::abs(at_ticks.off_four(i))});
       sizes.push_back(both.back()[1]);
     }
     const double most = ClockThresholds().outlier * median_of(sizes);
@@ -155,9 +126,8 @@ inline std::optional<ClockStamps> clock_behind(const Eigen::VectorXd& t_s, const
   for (const RunSpan& run : runs) {
     const std::optional<ClockStamps> one = clock_of(t_s, run);
     if (!one) continue;
-    for (const Eigen::VectorXd* values : outputs)
-      smoother.add(*values, run, t_s.segment(run.begin, run.size()), one->t_s);
     all.t_s.segment(run.begin, run.size()) = one->t_s;
+    for (const Eigen::VectorXd* values : outputs) smoother.add(*values, run, t_s, all.t_s);
     all.period_s = std::max(all.period_s, one->period_s);
     all.jitter_s = std::max(all.jitter_s, one->jitter_s);
   }

@@ -35,8 +35,8 @@ struct FrameThresholds {
   double caught_up = 0.6;  ///< of what was missed while a frame was repeated: the step after it
 };
 
-/// Whether a column shows that a frame is repeated: it hardly ever reads the same twice in a row, over all rows or over those
-/// in which it moves by a quantum a row. A slow column in coarse steps repeats by itself.
+/// Whether a column shows that a frame is repeated: it hardly ever reads the same twice in a row, over all rows or
+/// over those in which it moves by a quantum a row. A slow column in coarse steps repeats by itself.
 inline bool shows_frames(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
   constexpr FrameThresholds frames;
   constexpr double hardly_equal = MaskThresholds().hardly_equal;
@@ -54,21 +54,22 @@ inline bool shows_frames(const Eigen::VectorXd& values, const std::vector<RunSpa
   return moving >= frames.least_moving && equal < hardly_equal * moving;
 }
 
-/// The smallest step between neighbours that occurs twice: what one digit of a fine column is worth. 0 where there is none.
+/// The smallest step between neighbours that occurs twice: what one digit of a fine column is worth. 0 where there
+/// is none.
 inline double finest_step(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
   constexpr double same = 1e-3, nothing = 1e-9;
   std::vector<double> steps = step_sizes(values, runs);
   const double largest = steps.empty() ? 0.0 : *std::max_element(steps.begin(), steps.end());
   steps.erase(std::remove_if(steps.begin(), steps.end(), [&](double x) { return !(x > nothing * largest); }),
               steps.end());
-  SortedFromBelow sorted(std::move(steps));
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-    if (sorted[i] <= sorted[i - 1] * (1.0 + same)) return sorted[i - 1];
-  return 0.0;
+  std::sort(steps.begin(), steps.end());
+  const auto twice = std::adjacent_find(steps.begin(), steps.end(),
+                                        [](double less, double more) { return more <= less * (1.0 + same); });
+  return twice == steps.end() ? 0.0 : *twice;
 }
 
-/// Rests of an output that reads an exact 0 there: whether the others stand for as long meanwhile. Of a fine angle the noise
-/// shows at rest, too.
+/// Rests of an output that reads an exact 0 there: whether the others stand for as long meanwhile. Of a fine angle
+/// the noise shows at rest, too.
 class Rests {
 public:
   /// @param same  of each row: 2 where all outputs are the same as in the row before
@@ -128,8 +129,8 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       }
       same[static_cast<std::size_t>(i)] = equal == 0 ? 0 : known > 0 && equal == outputs.size() ? 2 : 1;
     }
-  // Noise of hundreds of digits repeats a value now and then, too, though no one step is often: as often as it takes any other
-  // small step.
+  // Noise of hundreds of digits repeats a value now and then, too, though no one step is often: as often as it
+  // takes any other small step.
   std::vector<double> quanta, scales, small_steps;
   for (const Eigen::VectorXd* one : outputs) {
     quanta.push_back(quantum_of(*one));
@@ -156,8 +157,8 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       speed[static_cast<std::size_t>(i)] = static_cast<unsigned char>(speed_class(fastest));
     }
   // How often all would be equal by chance. Over a whole log a column steps by none half as often as by one quantum
-  // either way; a log that rests for the most part would say so of a motion in which nothing ever stands. Among rows that
-  // move as fast, each of several columns says how often it stands while another one does not.
+  // either way; a log that rests for the most part would say so of a motion in which nothing ever stands. Among
+  // rows that move as fast, each of several columns says how often it stands while another one does not.
   struct Odds {
     double chance = 1.0, rows = 0.0, repeats = 0.0;
     bool repeats_are_rare() const { return chance * rows < FrameThresholds().by_chance * repeats; }
@@ -214,8 +215,8 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     }
     return to - from - (end - begin) >= 2 * around;
   };
-  // What stood catches up: a step as large as all that were missed, which were as large as those before and after, half and
-  // half. A motion that comes to rest meanwhile has larger ones before.
+  // A column that stood catches up: a step as large as all that were missed, which were as large as those before
+  // and after, half and half. A motion that comes to rest meanwhile has larger ones before.
   const auto catches_up = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
     if (end >= run.end) return false;
     constexpr Eigen::Index beside = around / 2;
@@ -239,31 +240,25 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     }
     return false;
   };
+  const auto is_repeat = [&](Eigen::Index row) { return same[static_cast<std::size_t>(row)] == 2; };
   for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin + 1; i < run.end;) {
-      if (same[static_cast<std::size_t>(i)] != 2) {
-        ++i;
-        continue;
-      }
-      Eigen::Index end = i;
-      while (end < run.end && same[static_cast<std::size_t>(end)] == 2) ++end;
+    for_each_stretch(run.begin + 1, run.end, is_repeat, [&](Eigen::Index begin, Eigen::Index end) {
       const std::size_t moves =
-          std::max(speed[static_cast<std::size_t>(i)], speed[static_cast<std::size_t>(end - 1)]);
+          std::max(speed[static_cast<std::size_t>(begin)], speed[static_cast<std::size_t>(end - 1)]);
       const Odds& alike = as_fast_as[moves - std::min(moves, frames.slower_speeds)];
       const Odds& odds = outputs.size() < 2 || alike.rows < frames.least_moving ? overall : alike;
-      const double by_chance = odds.rows * std::pow(odds.chance, static_cast<double>(end - i));
-      // What sticks, and then breaks away, repeats no frame.
-      if (!rests.may_be(i, end - i) && end - i <= frames.longest_repeat &&
-          ((odds.repeats_are_rare() && is_alone(run, i, end)) ||
-           (by_chance < frames.never_by_chance && catches_up(run, i, end))))
-        for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
-      i = end;
-    }
+      const double by_chance = odds.rows * std::pow(odds.chance, static_cast<double>(end - begin));
+      // A column that sticks, and then breaks away, repeats no frame.
+      if (!rests.may_be(begin, end - begin) && end - begin <= frames.longest_repeat &&
+          ((odds.repeats_are_rare() && is_alone(run, begin, end)) ||
+           (by_chance < frames.never_by_chance && catches_up(run, begin, end))))
+        std::fill(mask.begin() + begin, mask.begin() + end, 1);
+    });
   return by(Rule::repeated_frames, std::move(mask));
 }
 
-/// What a column reads when its sensor says nothing: the value that most of its masked samples share; NaN where there is
-/// none.
+/// The reading of a column whose sensor says nothing: the value that most of its masked samples share; NaN where
+/// there is none.
 /// @param recorded  the column as it was
 /// @param believed  the same, NaN where masked
 inline double default_reading(const Eigen::VectorXd& recorded, const Eigen::VectorXd& believed) {
@@ -277,8 +272,8 @@ inline double default_reading(const Eigen::VectorXd& recorded, const Eigen::Vect
   return missing;
 }
 
-/// Rows in which every column reads its default and one of them, at least, lies far from the rows around: what stands out in one
-/// column is lost in all.
+/// Rows in which every column reads its default and one of them, at least, lies far from the rows around: what
+/// stands out in one column is lost in all.
 /// @param recorded  columns as they were
 /// @param defaults  what each of them reads when its sensor says nothing
 inline RowMask lost_frames(const std::vector<const Eigen::VectorXd*>& recorded,
@@ -297,20 +292,16 @@ inline RowMask lost_frames(const std::vector<const Eigen::VectorXd*>& recorded,
     return true;
   };
   for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin; i < run.end; ++i) {
-      if (!is_default(i)) continue;
-      Eigen::Index end = i;
-      while (end < run.end && is_default(end)) ++end;
-      const bool is_inside = i > run.begin && end < run.end && end - i <= limit.longest_burst;
+    for_each_stretch(run.begin, run.end, is_default, [&](Eigen::Index begin, Eigen::Index end) {
+      const bool is_inside = begin > run.begin && end < run.end && end - begin <= limit.longest_burst;
       for (std::size_t c = 0; is_inside && c < recorded.size(); ++c) {
-        const double before = (*recorded[c])[i - 1], after = (*recorded[c])[end];
+        const double before = (*recorded[c])[begin - 1], after = (*recorded[c])[end];
         // Farther from both ends than they from each other: no motion passes there in between.
         const double off = std::min(std::abs(defaults[c] - before), std::abs(defaults[c] - after));
-        if (!(off > least[c] && off > std::abs(after - before))) continue;
-        for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
+        if (off > least[c] && off > std::abs(after - before))
+          std::fill(mask.begin() + begin, mask.begin() + end, 1);
       }
-      i = end;
-    }
+    });
   return by(Rule::lost_frames, std::move(mask));
 }
 

@@ -2,18 +2,20 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/own_inputs.hpp>
+#include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
-#include <thermopower/plant/goal_profile.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/charge_before.hpp>
+#include <thermopower/plant/goal_profile.hpp>
 #include <thermopower/plant/plant.hpp>
+#include <thermopower/plant/plant_info.hpp>
 #include <thermopower/plant/rows.hpp>
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,20 +65,28 @@ inline Eigen::VectorXd unwrapped(const Eigen::VectorXd& angle_deg, const std::ve
   return result;
 }
 
+/// Slopes of a column by its neighbours in a run, per second; 0 in a run of one row.
+inline Eigen::VectorXd slopes_of(const Eigen::VectorXd& values, const Eigen::VectorXd& t_s,
+                                 const std::vector<RunSpan>& runs) {
+  Eigen::VectorXd slopes = Eigen::VectorXd::Zero(values.size());
+  for (const RunSpan& run : runs)
+    for (Eigen::Index row = run.begin; row < run.end && run.size() > 1; ++row) {
+      const Eigen::Index before = std::max(run.begin, row - 1), after = std::min(run.end - 1, row + 1);
+      slopes[row] = (values[after] - values[before]) / (t_s[after] - t_s[before]);
+    }
+  return slopes;
+}
+
 /// Lets the model's servo make the command: of its target and of the motion that was measured.
 inline void close_loop(const Model& model, Inputs& inputs) {
   inputs.closed_loop = true;
-  const bool angle = inputs.judged(Signal::angle_deg), rate = inputs.judged(Signal::rate_dps);
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(inputs.rows());
-  inputs.seen_deg = angle ? held(inputs.of(Signal::angle_deg), inputs.runs) : none;
-  inputs.seen_dps = rate ? held(inputs.of(Signal::rate_dps), inputs.runs) : none;
-  for (const RunSpan& run : inputs.runs)
-    for (Eigen::Index row = run.begin; !rate && row < run.end; ++row) {  // slopes of the angle
-      const Eigen::Index before = std::max(run.begin, row - 1), after = std::min(run.end - 1, row + 1);
-      if (after > before)
-        inputs.seen_dps[row] =
-            (inputs.seen_deg[after] - inputs.seen_deg[before]) / (inputs.t_s[after] - inputs.t_s[before]);
-    }
+  const auto seen = [&](Signal signal) {
+    return inputs.judged(signal) ? held(inputs.of(signal), inputs.runs)
+                                 : Eigen::VectorXd(Eigen::VectorXd::Zero(inputs.rows()));
+  };
+  inputs.seen_deg = seen(Signal::angle_deg);
+  inputs.seen_dps = inputs.judged(Signal::rate_dps) ? seen(Signal::rate_dps)
+                                                    : slopes_of(inputs.seen_deg, inputs.t_s, inputs.runs);
   replay_servo(model, inputs);
 }
 
@@ -85,13 +95,38 @@ inline constexpr const char* heater_power_column = "heater_power";
 
 /// The names of a recording's columns, as sentences have them.
 inline std::string columns_in_words(const Recording& recording) {
-  constexpr std::size_t most = 12;
-  std::string names = "t_s";
-  for (std::size_t i = 0; i < recording.columns.size() && i < most; ++i)
-    names += ", " + recording.columns[i].name;
-  if (recording.columns.size() > most)
-    names += " and " + std::to_string(recording.columns.size() - most) + " more";
-  return names;
+  std::vector<std::string> names = {"t_s"};
+  for (const Column& column : recording.columns) names.push_back(column.name);
+  return listed(names, 13);
+}
+
+/// Takes from a recording what a plant of one's own needs, by the names of its columns.
+inline Inputs prepare_own(const plant::PlantInfo& info, const Recording& recording) {
+  Inputs inputs;
+  inputs.own = true;
+  inputs.name = recording.name;
+  inputs.t_s = recording.t_s;
+  inputs.runs = recording.spans();
+  bool complete = true;
+  for (const plant::PlantInput& input : info.inputs) {
+    if (recording.has(input.name)) {
+      inputs.own_inputs.push_back(held(recording.column(input.name), inputs.runs));
+    } else {
+      if (!input.otherwise) {
+        complete = false;
+        inputs.not_judged.push_back({"", "nothing is judged: the recording has no column " + input.name});
+      }
+      inputs.own_inputs.push_back(Eigen::VectorXd::Constant(recording.rows(), input.otherwise.value_or(0.0)));
+    }
+  }
+  for (std::size_t i = 0; i < info.signals.size(); ++i) {
+    const std::string& name = info.signals[i].name;
+    if (!recording.has(name))
+      inputs.not_judged.push_back(
+          {name, plant::the_variable(name) + " is not judged: the recording has no column " + name});
+    else if (complete) inputs.measured[i] = recording.column(name);
+  }
+  return inputs;
 }
 
 /// Takes from a recording what the model needs, and notes what cannot be judged and why.
@@ -99,10 +134,7 @@ inline std::string columns_in_words(const Recording& recording) {
 inline Inputs prepare(const Model& model, const Recording& recording) {
   if (const auto problem = recording.validate())
     throw InvalidInput("recording '" + recording.name + "': " + *problem);
-  if (model.own)
-    return prepare_own(
-        *model.own->equations->info(), recording,
-        [](const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) { return held(values, runs); });
+  if (model.own) return prepare_own(*model.own->equations->info(), recording);
   Inputs inputs;
   inputs.name = recording.name;
   inputs.t_s = recording.t_s;
@@ -147,9 +179,9 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
   else if (inputs.drive_A.size() > 0 && ohmic) inputs.heat = HeatSource::drive;
   if (model.has_thermal()) inputs.heat_W = take("heat_W");
   if (inputs.heat == HeatSource::none && inputs.heat_W.size() > 0) inputs.heat = HeatSource::recorded;
-  if (recording.has("current_A")) inputs.held_current_A = take("current_A");
+  inputs.held_current_A = take("current_A");
   plant::RecordedCharge(inputs.t_s, inputs.held_current_A, inputs.power_param).tell(inputs.runs);
-  if (recording.has("motor_C")) inputs.held_motor_C = take("motor_C");
+  inputs.held_motor_C = take("motor_C");
 
   auto& notes = inputs.not_judged;
   const auto lack = [&](const char* what, const char* column) {
@@ -207,7 +239,7 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
         inputs.measured[static_cast<std::size_t>(Signal::angle_deg)] =
             unwrapped(recording.column("angle_deg"), inputs.runs);
       else lack("angle_deg", "angle_deg");
-      if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
+      inputs.covariate_motor_C = take("motor_C");
       if (!commanded) {
         if (recording.has("current_A") && !model.has_current() && !model.has_thermal()) {
           inputs.effort_is_output = true;
@@ -219,15 +251,19 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
       }
     }
   }
-  if (inputs.bench() && recording.has("rate_dps")) inputs.covariate_rate_dps = take("rate_dps");
+  if (inputs.bench()) inputs.covariate_rate_dps = take("rate_dps");
   if (!inputs.bench() && !inputs.axis())
     notes.push_back({"", "the columns that were recorded are " + columns_in_words(recording)});
   return inputs;
 }
 
-/// What is not judged, each sentence once. One that holds of some recordings only names them: of the others the signal is
-/// judged.
-inline std::vector<std::string> not_judged_in(const std::vector<const Inputs*>& all) {
+/// Sentences about signals that are not judged, each once. One that holds of some recordings only names them: of
+/// the others the signal is judged.
+/// @param parts  of the recordings
+inline std::vector<std::string> not_judged_in(std::initializer_list<const std::vector<Inputs>*> parts) {
+  std::vector<const Inputs*> all;
+  for (const std::vector<Inputs>* const part : parts)
+    for (const Inputs& one : *part) all.push_back(&one);
   std::vector<std::string> sentences;
   for (const Inputs* one : all)
     for (const plant::NotJudged& note : one->not_judged)
@@ -245,9 +281,7 @@ inline std::vector<std::string> not_judged_in(const std::vector<const Inputs*>& 
       if (std::find(names.begin(), names.end(), one->name) == names.end()) names.push_back(one->name);
     }
     if (count == all.size()) continue;
-    std::string where;
-    for (const std::string& name : names) where += (where.empty() ? "" : ", ") + name;
-    sentence = where + ": " + sentence;
+    sentence = listed(names) + ": " + sentence;
   }
   return sentences;
 }

@@ -14,13 +14,13 @@
 #include <vector>
 
 /// @file linear_solve.hpp
-/// The systems of linear equations that a diagnosis solves. They have some tens of unknowns: plain loops are as fast as a library's
-/// decompositions, which cost each program that is compiled with this one several seconds.
+/// The systems of linear equations that a diagnosis solves. They have some tens of unknowns: plain loops are as
+/// fast as a library's decompositions, which cost each program that is compiled with this one several seconds.
 
 namespace thermopower::gap::engine {
 
-/// A x = b with one symmetric and positive definite A and any b, by A = L D L' (Golub & Van Loan 2013, 4.1). An unknown that
-/// A leaves no pivot for is 0.
+/// A x = b with one symmetric and positive definite A and any b, by A = L D L' (Golub & Van Loan 2013, 4.1). An
+/// unknown that A leaves no pivot for is 0.
 class SymmetricSystem {
 public:
   /// @param a  n by n, of which the lower triangle is read
@@ -30,7 +30,7 @@ public:
     for (Eigen::Index k = 0; k < n; ++k)
       for (Eigen::Index j = k + 1; j < n; ++j) {
         const double multiple = divided(factors_(j, k), k);
-        for (Eigen::Index i = j; i < n; ++i) factors_(i, j) -= multiple * factors_(i, k);
+        factors_.col(j).tail(n - j) -= multiple * factors_.col(k).tail(n - j);
       }
     for (Eigen::Index k = 0; k < n; ++k)
       for (Eigen::Index i = k + 1; i < n; ++i) factors_(i, k) = divided(factors_(i, k), k);
@@ -40,8 +40,7 @@ public:
   Eigen::VectorXd solve(Eigen::VectorXd b) const {
     assert(b.size() == factors_.rows());
     const Eigen::Index n = factors_.rows();
-    for (Eigen::Index k = 0; k < n; ++k)
-      for (Eigen::Index i = k + 1; i < n; ++i) b[i] -= factors_(i, k) * b[k];
+    for (Eigen::Index k = 0; k < n; ++k) b.tail(n - k - 1) -= factors_.col(k).tail(n - k - 1) * b[k];
     for (Eigen::Index k = n; k-- > 0;) {
       b[k] = divided(b[k], k);
       for (Eigen::Index i = k + 1; i < n; ++i) b[k] -= factors_(i, k) * b[i];
@@ -65,18 +64,18 @@ inline void invert_symmetric(Eigen::MatrixXd& a) {
   for (Eigen::Index k = 0; k < n; ++k) {
     const double pivot = a(k, k);
     a(k, k) = 1.0;
-    for (Eigen::Index j = 0; j < n; ++j) a(k, j) /= pivot;
+    a.row(k) /= pivot;
     for (Eigen::Index i = 0; i < n; ++i) {
       if (i == k) continue;
       const double factor = a(i, k);
       a(i, k) = 0.0;
-      for (Eigen::Index j = 0; j < n; ++j) a(i, j) -= factor * a(k, j);
+      a.row(i) -= factor * a.row(k);
     }
   }
 }
 
-/// The x that makes |A x - b| least, of several the shortest, with one A of any rank and any b: by Householder reflections
-/// with column pivoting (Golub & Van Loan 2013, 5.4 and 5.5).
+/// The x that makes |A x - b| least, of several the shortest, with one A of any rank and any b: by Householder
+/// reflections with column pivoting (Golub & Van Loan 2013, 5.4 and 5.5).
 class LeastSquares {
 public:
   /// @param a  m by n
@@ -130,14 +129,13 @@ private:
     Eigen::Index longest = k;
     for (Eigen::Index j = k + 1; j < r_.cols(); ++j)
       if (length_below(k, j) > length_below(k, longest)) longest = j;
-    for (Eigen::Index i = 0; i < r_.rows(); ++i) std::swap(r_(i, k), r_(i, longest));
+    r_.col(k).swap(r_.col(longest));
     std::swap(order_[static_cast<std::size_t>(k)], order_[static_cast<std::size_t>(longest)]);
   }
 
   /// The mirror that turns column k, from its diagonal on, into that direction.
   void add_mirror(Eigen::Index k, double length) {
-    Mirror mirror{k, Eigen::VectorXd(r_.rows() - k)};
-    for (Eigen::Index i = k; i < r_.rows(); ++i) mirror.normal[i - k] = r_(i, k);
+    Mirror mirror{k, r_.col(k).tail(r_.rows() - k)};
     mirror.normal[0] += mirror.normal[0] < 0.0 ? -length : length;
     mirror.normal /= mirror.normal.norm();
     mirrors_.push_back(std::move(mirror));

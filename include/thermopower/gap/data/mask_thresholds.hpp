@@ -55,7 +55,7 @@ struct MaskThresholds {
   double outside = 1.5;  ///< ranges (5th to 95th percentile) beyond the level a burst of a moving axis lies
 };
 
-/// What masks need to know about a column.
+/// The facts about a column that masks need.
 struct ColumnTraits {
   bool cannot_jump = false;   ///< a temperature: what jumps away and back was never there
   bool zero_is_rest = false;  ///< an exact 0 is what a good sensor reads at rest

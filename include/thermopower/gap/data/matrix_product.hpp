@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 
 /// @file matrix_product.hpp
-/// The products of matrices that a diagnosis needs. Each is made here, for one type of matrix: a compiler makes a product anew
-/// for each pair of types that it meets.
+/// The products of matrices that a diagnosis needs. Each is made here, for one type of matrix: a compiler makes a
+/// product anew for each pair of types that it meets.
 
 namespace thermopower::gap::engine {
 

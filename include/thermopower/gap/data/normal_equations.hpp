@@ -2,13 +2,13 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <cassert>
-
 #include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/matrix_product.hpp>
 
 #include <Eigen/Core>
 
+#include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -32,33 +32,19 @@ public:
   /// Adds a row of terms that err. @param instruments  one for each term, that do not err with it
   void add(const Eigen::VectorXd& instruments, const Eigen::VectorXd& terms, double response) {
     assert(terms.size() == product_.size() && instruments.size() == terms.size());
-    for (Eigen::Index k = 0; k < terms.size(); ++k) {
-      for (Eigen::Index i = 0; i < terms.size(); ++i) square_(i, k) += instruments[i] * terms[k];
-      product_[k] += instruments[k] * response;
-    }
+    square_ += instruments * terms.transpose();
+    product_ += instruments * response;
   }
 
   /// Adds other sums so many times: -1 takes them out.
   void add(const NormalEquations& other, double times) {
     assert(other.product_.size() == product_.size());
-    for (Eigen::Index k = 0; k < product_.size(); ++k) {
-      for (Eigen::Index i = 0; i < product_.size(); ++i) square_(i, k) += times * other.square_(i, k);
-      product_[k] += times * other.product_[k];
-    }
+    square_ += times * other.square_;
+    product_ += times * other.product_;
   }
 
   /// The coefficients; of several that do as well the shortest.
   Eigen::VectorXd solve() const { return LeastSquares(square_).solve(product_); }
-
-  /// Those of a regression on all terms but one: 0 for that.
-  Eigen::VectorXd solve_without(Eigen::Index term) const {
-    NormalEquations others = *this;
-    assert(term >= 0 && term < product_.size());
-    others.square_.row(term).setZero();
-    others.square_.col(term).setZero();
-    others.product_[term] = 0.0;
-    return others.solve();
-  }
 
   /// Those of a regression on the first terms alone. @param count  of them
   Eigen::VectorXd solve_first(Eigen::Index count) const {
@@ -70,6 +56,18 @@ private:
   Eigen::MatrixXd square_;   // of the terms, by the terms
   Eigen::VectorXd product_;  // of the terms and the response
 };
+
+/// Standard error of a statistic by the delete-one-block jackknife (Efron & Tibshirani 1993, chapter 11).
+/// @param left_out  the statistic with one block of the data left out after another, in its unit
+/// @return in the same unit; 0 of fewer than two values, NaN where one of them is not finite
+inline double jackknife_error(const std::vector<double>& left_out) {
+  if (left_out.size() < 2) return 0.0;
+  const double count = static_cast<double>(left_out.size());
+  double mean = 0.0, square = 0.0;
+  for (const double one : left_out) mean += one / count;
+  for (const double one : left_out) square += (one - mean) * (one - mean);
+  return std::sqrt((count - 1.0) / count * square);
+}
 
 /// All sums of some blocks, and what is made of them without one block after another: for jackknife_error().
 template <class Of>

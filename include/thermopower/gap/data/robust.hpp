@@ -2,15 +2,13 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/sorted_from_below.hpp>
 #include <thermopower/gap/recording.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 /// @file robust.hpp
@@ -51,8 +49,45 @@ inline std::vector<double> finite_samples(const Eigen::VectorXd& values) {
   return list;
 }
 
-/// Hands the rows of `count` finite samples that follow on each other inside a run to `use(const Eigen::Index* rows)`: rows next
-/// to each other, or, where a sensor speaks in so few rows that hardly any are, its samples in order.
+/// The largest or the least value of a column.
+struct Extreme {
+  double value = 0.0;         ///< itself
+  double next = 0.0;          ///< the one next to it
+  std::ptrdiff_t count = 0;   ///< samples that have it
+  std::ptrdiff_t beside = 0;  ///< samples that have the one next to it
+};
+
+/// The largest value of a column, or the least; where there is no other one, it is next to itself.
+/// @param samples  at least one  @param top  the largest
+inline Extreme extreme_of(const std::vector<double>& samples, bool top) {
+  const auto is_beyond = [top](double one, double other) { return top ? one > other : one < other; };
+  assert(!samples.empty());
+  Extreme one;
+  one.value = one.next = samples.front();
+  for (const double sample : samples)
+    if (is_beyond(sample, one.value)) one.value = sample;
+  for (const double sample : samples)
+    if (sample != one.value && (one.next == one.value || is_beyond(sample, one.next))) one.next = sample;
+  one.count = std::count(samples.begin(), samples.end(), one.value);
+  one.beside = std::count(samples.begin(), samples.end(), one.next);
+  return one;
+}
+
+/// Hands each stretch of rows [begin, end) inside [from, to) in which `is(row)` holds to `use(begin, end)`.
+template <class Is, class Use>
+void for_each_stretch(Eigen::Index from, Eigen::Index to, Is&& is, Use&& use) {
+  for (Eigen::Index begin = from; begin < to; ++begin) {
+    if (!is(begin)) continue;
+    Eigen::Index end = begin + 1;
+    while (end < to && is(end)) ++end;
+    use(begin, end);
+    begin = end;  // in which it does not hold
+  }
+}
+
+/// Hands the rows of `count` finite samples that follow on each other inside a run to `use(const Eigen::Index*
+/// rows)`: rows next to each other, or, where a sensor speaks in so few rows that hardly any are, its samples in
+/// order.
 template <std::size_t count, class Use>
 void for_each_in_order(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs, Use&& use) {
   constexpr double hardly_any = 0.1;
@@ -89,7 +124,7 @@ inline std::vector<double> step_sizes(const Eigen::VectorXd& values, const std::
   return list;
 }
 
-/// Share of steps of 0, 1 of none.
+/// Share of numbers that are 0, such as of steps between equal neighbours; 1 of none.
 inline double equal_share_of(const std::vector<double>& steps) {
   const auto equal = std::count(steps.begin(), steps.end(), 0.0);
   return steps.empty() ? 1.0 : static_cast<double>(equal) / static_cast<double>(steps.size());
@@ -106,16 +141,14 @@ inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSp
   return median_of(list) / (normal_median * gain);
 }
 
-/// The grid on which most samples of a channel stand: the least distance of values that recur, where all of these lie
-/// a whole number of such distances apart. A logger that averages a coarse reading passes from one level to the next by values of
-/// its own, so that few neighbours differ by the quantum. 0 where there is none.
+/// The grid on which most samples of a channel stand: the least distance of values that recur, where all of these
+/// lie a whole number of such distances apart. A logger that averages a coarse reading passes from one level to the
+/// next by values of its own, so that few neighbours differ by the quantum. 0 where there is none.
 inline double grid_of_levels(const Eigen::VectorXd& values) {
   constexpr double most = 0.5, on_grid = 0.02;
   constexpr std::size_t recurs = 3, few_levels = 4;
-  std::vector<double> sorted;
   constexpr Eigen::Index enough = 20000;
-  for (const double value : values.head(std::min(values.size(), enough)))
-    if (std::isfinite(value)) sorted.push_back(value);
+  std::vector<double> sorted = finite_samples(values.head(std::min(values.size(), enough)));
   std::sort(sorted.begin(), sorted.end());
   std::vector<double> levels;
   std::size_t held = 0;
@@ -134,8 +167,8 @@ inline double grid_of_levels(const Eigen::VectorXd& values) {
   return least;
 }
 
-/// The smallest step between neighbours that occurs again and again (in at least a hundredth of all steps), so that a few odd samples
-/// do not hide it. 0 where there is none: values that hardly ever differ by the same amount.
+/// The smallest step between neighbours that occurs again and again (in at least a hundredth of all steps), so that
+/// a few odd samples do not hide it. 0 where there is none: values that hardly ever differ by the same amount.
 /// @param same  share by which steps of one quantum differ, because few digits of them were logged
 inline double repeated_step(const Eigen::VectorXd& values, double same = 1e-3) {
   constexpr double often = 0.01, odd = 0.1;
@@ -150,9 +183,10 @@ inline double repeated_step(const Eigen::VectorXd& values, double same = 1e-3) {
     previous = value;
     if (steps.size() >= enough) break;
   }
-  SortedFromBelow sorted(std::move(steps));
+  std::vector<double>& sorted = steps;
+  std::sort(sorted.begin(), sorted.end());
   constexpr std::size_t few = 10;
-  if (sorted.size() < few) return sorted.size() == 0 ? 0.0 : sorted[0];
+  if (sorted.size() < few) return sorted.empty() ? 0.0 : sorted[0];
   const double needed = std::max(2.0, often * static_cast<double>(sorted.size()));
   // Where many steps are smaller, one that repeats only happens to.
   for (std::size_t from = 0; static_cast<double>(from) <= odd * static_cast<double>(sorted.size());) {

@@ -61,16 +61,13 @@ struct InputColumn {
 };
 
 /// The columns that are inputs wherever they are recorded.
-inline const std::vector<InputColumn>& input_columns() {
-  static const std::vector<InputColumn> columns = {
-      {"power_param", InputPace::command}, {"drive_A", InputPace::command},
-      {"voltage_V", InputPace::command},   {"target_deg", InputPace::command},
-      {"target_dps", InputPace::command},  {"target_C", InputPace::command},
-      {"torque_Nm", InputPace::command},   {"heat_W", InputPace::command},
-      {"supply_V", InputPace::slow},       {"ambient_C", InputPace::slow},
-      {"airspeed_mps", InputPace::slow},   {"neighbour_C", InputPace::slow}};
-  return columns;
-}
+inline constexpr InputColumn input_columns[] = {
+    {"power_param", InputPace::command}, {"drive_A", InputPace::command},
+    {"voltage_V", InputPace::command},   {"target_deg", InputPace::command},
+    {"target_dps", InputPace::command},  {"target_C", InputPace::command},
+    {"torque_Nm", InputPace::command},   {"heat_W", InputPace::command},
+    {"supply_V", InputPace::slow},       {"ambient_C", InputPace::slow},
+    {"airspeed_mps", InputPace::slow},   {"neighbour_C", InputPace::slow}};
 
 /// Whether a baseline ignores an input: then its holes cut no run.
 inline bool is_ignored(const Model& model, const std::string& column) {
@@ -79,7 +76,8 @@ inline bool is_ignored(const Model& model, const std::string& column) {
          model.effects.find("neighbour_heating") == model.effects.end();
 }
 
-/// How long an unknown input does not matter: a small part of the time constant of a body; 0 s of all that answers at once.
+/// How long an unknown input does not matter: a small part of the time constant of a body; 0 s of all that answers
+/// at once.
 inline double unnoticed_s(const Model& model) {
   if (model.own || model.has_axis()) return 0.0;
   double time_constant_s = 0.0;
@@ -111,42 +109,38 @@ inline std::vector<RunSpan> cut_at(const std::vector<RunSpan>& runs, const RowMa
   return result;
 }
 
+/// The runs cut wherever the power steps.
+inline std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power, const std::vector<RunSpan>& runs) {
+  RowMask starts(static_cast<std::size_t>(power.size()), 0);
+  for (Eigen::Index i = 1; i < power.size(); ++i)
+    starts[static_cast<std::size_t>(i)] = std::isfinite(power[i]) && power[i] != power[i - 1] ? 1 : 0;
+  return cut_at(runs, starts, true);
+}
+
 /// Runs without the rows that are set in `unknown`: what is left of each, as segments.
 inline std::vector<RunSpan> without(const std::vector<RunSpan>& runs, const RowMask& unknown) {
   assert(runs.empty() || runs.back().end <= static_cast<Eigen::Index>(unknown.size()));
   std::vector<RunSpan> result;
   for (const RunSpan& run : runs)
-    for (Eigen::Index row = run.begin; row < run.end;) {
-      if (unknown[static_cast<std::size_t>(row)] != 0) {
-        ++row;
-        continue;
-      }
-      RunSpan piece = run;
-      piece.begin = row;
-      piece.goes_on = run.goes_on || row > run.begin;
-      while (row < run.end && unknown[static_cast<std::size_t>(row)] == 0) ++row;
-      piece.end = row;
-      result.push_back(piece);
-    }
+    for_each_stretch(
+        run.begin, run.end, [&](Eigen::Index row) { return unknown[static_cast<std::size_t>(row)] == 0; },
+        [&](Eigen::Index begin, Eigen::Index end) {
+          RunSpan piece = run;
+          piece.begin = begin;
+          piece.end = end;
+          piece.goes_on = run.goes_on || begin > run.begin;
+          result.push_back(piece);
+        });
   return result;
 }
 
-/// Whether two values of a command count as the same: then it is taken to have stood still between them.
-class CommandRange {
-public:
-  /// @param values  of the column, NaN where missing
-  explicit CommandRange(const Eigen::VectorXd& values) {
-    std::vector<double> list = finite_samples(values);
-    range_ = quantile_of(list, 0.98) - quantile_of(list, 0.02);
-  }
-  /// Whether a command that was `before` and is `after` stood still meanwhile.
-  bool same(double before, double after) const {
-    return std::abs(after - before) <= SegmentThresholds().same_command * range_;
-  }
-
-private:
-  double range_ = 0.0;
-};
+/// By how much two values of a command may differ that count as the same: then it is taken to have stood still
+/// between them.
+/// @param values  of the column, NaN where missing
+inline double same_command_within(const Eigen::VectorXd& values) {
+  std::vector<double> list = finite_samples(values);
+  return SegmentThresholds().same_command * (quantile_of(list, 0.98) - quantile_of(list, 0.02));
+}
 
 /// The intervals between the stamps of runs, in s.
 inline std::vector<double> intervals_of(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
@@ -161,8 +155,8 @@ inline double long_pause(std::vector<double>& steps) {
   return SegmentThresholds().irregular_gap * quantile_of(steps, 0.95);
 }
 
-/// The interval from which time passed unrecorded, of such intervals. Where one in twenty is longer than a missing row would tell,
-/// the log has no interval of its own, and only far longer ones count.
+/// The interval from which time passed unrecorded, of such intervals. Where one in twenty is longer than a missing
+/// row would tell, the log has no interval of its own, and only far longer ones count.
 inline double shortest_pause(std::vector<double> steps) {
   constexpr SegmentThresholds limit;
   constexpr double normal_median = 0.6745;
@@ -185,14 +179,14 @@ inline std::vector<RunSpan> cut_at_long_pauses(const Eigen::VectorXd& t_s, const
   return cut_at(runs, starts, true);
 }
 
-/// Looks at the stamps: says where they vary or pause, and sets `starts` where a row follows on a pause over which
-/// a command did not stand still, and which the model notices.
-inline void check_stamps(const Model& model, FindingList& list, const std::vector<RunSpan>& runs,
-                         RowMask& starts) {
+/// Looks at the stamps, and says where they vary or pause.
+/// @return the rows that follow on a pause over which a command did not stand still, and which the model notices
+inline RowMask check_stamps(const Model& model, FindingList& list, const std::vector<RunSpan>& runs) {
   constexpr SegmentThresholds limit;
   const Recording& r = list.recording();
   std::vector<double> steps = intervals_of(r.t_s, runs);
-  if (steps.size() < 3) return;
+  RowMask cut(static_cast<std::size_t>(r.rows()), 0);
+  if (steps.size() < 3) return cut;
   const double usual = median_of(steps), longest = quantile_of(steps, 0.95),
                shortest = quantile_of(steps, 0.05);
   const bool jitters = longest > limit.jitter * usual || shortest < usual / limit.jitter;
@@ -201,21 +195,20 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
              "the interval varies from " + short_number(shortest) + " to " + short_number(longest) +
                  " s around " + short_number(usual) + " s");
   const double pause = std::max(shortest_pause(steps), unnoticed_s(model));
-  std::vector<std::pair<const Eigen::VectorXd*, CommandRange>> commands;
-  for (const InputColumn& input : input_columns())
+  std::vector<std::pair<const Eigen::VectorXd*, double>> commands;  // and within how much they are the same
+  for (const InputColumn& input : input_columns)
     if (input.pace == InputPace::command && r.has(input.name) && !is_ignored(model, input.name))
-      commands.emplace_back(r.find(input.name), CommandRange(*r.find(input.name)));
-  RowMask cut(static_cast<std::size_t>(r.rows()), 0);
+      commands.emplace_back(r.find(input.name), same_command_within(*r.find(input.name)));
   double worst = 0.0;
   for (const RunSpan& run : runs)
     for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
       const double step = r.t_s[i] - r.t_s[i - 1];
       if (!(step > pause)) continue;
       bool stood_still = step <= static_cast<double>(limit.held_rows) * usual && !commands.empty();
-      for (const auto& [values, range] : commands)
-        stood_still = stood_still && range.same((*values)[i - 1], (*values)[i]);
+      for (const auto& [values, within] : commands)
+        stood_still = stood_still && std::abs((*values)[i] - (*values)[i - 1]) <= within;
       if (stood_still) continue;
-      cut[static_cast<std::size_t>(i)] = starts[static_cast<std::size_t>(i)] = 1;
+      cut[static_cast<std::size_t>(i)] = 1;
       worst = std::max(worst, step);
     }
   list.add_rows(FindingKind::gap_in_stamps, Severity::note, "t_s", cut, FindingAction::segmented,
@@ -223,17 +216,20 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
                     " s where the usual interval is " + short_number(usual) +
                     " s) in which the inputs are unknown",
                 "log without losing rows");
+  return cut;
 }
 
-/// How fast an axis gets, but for a spike's rates, deg/s. 0 where the rate often reads the same twice: then it may well stand.
+/// How fast an axis gets, but for a spike's rates, deg/s. 0 where the rate often reads the same twice: then it may
+/// well stand.
 inline double fastest_that_rarely_stands(const Eigen::VectorXd& rate_dps, const std::vector<RunSpan>& runs) {
   std::vector<double> rates = finite_samples(rate_dps.cwiseAbs());
   const bool stands = !(equal_share_of(step_sizes(rate_dps, runs)) < MaskThresholds().rarely_equal);
   return rates.empty() || stands ? 0.0 : quantile_of(rates, SegmentThresholds().nearly_all);
 }
 
-/// Whether an axis went on by a jump while its angle stood still up to a row, the interval after that included, as far as its
-/// rate tells. Where that stood still, too, in a motion, or was not read, it may have gone as far as it is fast.
+/// Whether an axis went on by a jump while its angle stood still up to a row, the interval after that included, as
+/// far as its rate tells. Where that stood still, too, in a motion, or was not read, it may have gone as far as it
+/// is fast.
 /// @param fastest_dps  0: a rate that stands still tells as much as any other
 inline bool went_on_while_standing(const Eigen::VectorXd& angle, const Eigen::VectorXd& rate_dps,
                                    double fastest_dps, const Eigen::VectorXd& t_s, Eigen::Index row,
@@ -256,18 +252,19 @@ inline bool went_on_while_standing(const Eigen::VectorXd& angle, const Eigen::Ve
   return std::abs(went - jump) <= SegmentThresholds().went_on * std::abs(jump);
 }
 
-/// Says where an axis was put elsewhere between two rows, and sets `starts` there: swings of a pendulum that were held, let
+/// Says where an axis was put elsewhere between two rows: swings of a pendulum that were held, let
 /// go and logged on end. The rows before and after move slowly, or stand, at places that no motion between them joins.
 /// An angle that stood still while its rate went on as far was a sensor's that had stopped.
 /// @param angle     without wraps, degrees
 /// @param rate_dps  null: none was recorded
-inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const Eigen::VectorXd* rate_dps,
-                         const std::vector<RunSpan>& runs, RowMask& starts) {
+/// @return the rows that begin elsewhere
+inline RowMask check_resets(FindingList& list, const Eigen::VectorXd& angle, const Eigen::VectorXd* rate_dps,
+                            const std::vector<RunSpan>& runs) {
   constexpr SegmentThresholds limit;
   const Eigen::VectorXd& t_s = list.recording().t_s;
   const double least = limit.reset_noise * (white_scale(angle, runs) + quantum_of(angle));
   std::optional<double> fastest_dps;  // of the whole recording: asked where something jumps
-  RowMask cut(starts.size(), 0);
+  RowMask cut(static_cast<std::size_t>(angle.size()), 0);
   double largest = 0.0;
   for (const RunSpan& run : runs)
     for (Eigen::Index k = run.begin + limit.reset_rows; k + 1 + limit.reset_rows < run.end; ++k) {
@@ -291,20 +288,21 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
         is_reset = !went_on_while_standing(angle, *rate_dps, *fastest_dps, t_s, k, run.begin);
       }
       if (!is_reset) continue;
-      cut[static_cast<std::size_t>(k + 1)] = starts[static_cast<std::size_t>(k + 1)] = 1;
+      cut[static_cast<std::size_t>(k + 1)] = 1;
       largest = std::max(largest, std::abs(jump));
     }
   list.add_rows(FindingKind::position_reset, Severity::note, "angle_deg", cut, FindingAction::segmented,
                 "begin elsewhere (by up to " + short_number(largest) +
                     " deg) than the row before them, as no motion around them does: the axis was put there",
                 "give each swing a label in the column run");
+  return cut;
 }
 
 /// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.
-/// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ; infinite: no hole
-///                  matters
-/// @param untold    samples that were taken away because they stood still or at the end of a range: the ends of a hole of them
-///                  are the same whatever was between
+/// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ; infinite:
+///                  no hole matters
+/// @param untold    samples that were taken away because they stood still or at the end of a range: the ends of a hole
+///                  of them are the same whatever was between
 /// @return the column with known holes filled
 inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::VectorXd& values,
                                    const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
@@ -312,29 +310,22 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
   constexpr SegmentThresholds limit;
   assert(values.size() == t_s.size() && static_cast<Eigen::Index>(unknown.size()) == values.size());
   Eigen::VectorXd filled = values;
-  const CommandRange range(values);
+  const double same_within = same_command_within(values);
   const double noise = white_scale(values, runs) + quantum_of(values);
+  const auto is_missing = [&](Eigen::Index row) { return !std::isfinite(values[row]); };
   for (const RunSpan& run : runs)
-    for (Eigen::Index row = run.begin; row < run.end;) {
-      if (std::isfinite(values[row])) {
-        ++row;
-        continue;
-      }
-      Eigen::Index end = row;
-      while (end < run.end && !std::isfinite(values[end])) ++end;
+    for_each_stretch(run.begin, run.end, is_missing, [&](Eigen::Index row, Eigen::Index end) {
       const bool inside = row > run.begin && end < run.end;
       const double before = row > run.begin ? values[row - 1] : missing,
                    after = end < run.end ? values[end] : missing;
-      bool known = false;
+      bool known = (inside && t_s[end] - t_s[row - 1] <= stands_s) || std::isinf(stands_s);
       if (input.pace == InputPace::command)
-        // What is off at one end only was switched in between.
-        known = inside && end - row <= limit.held_rows && range.same(before, after) &&
-                (before == 0.0) == (after == 0.0);
-      else
-        known = (inside &&
-                 (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
-                (!inside && (row > run.begin || end < run.end) && end - row <= limit.bridged_rows);
-      known = known || (inside && t_s[end] - t_s[row - 1] <= stands_s) || std::isinf(stands_s);
+        // A command that is off at one end only was switched in between.
+        known = known || (inside && end - row <= limit.held_rows && std::abs(after - before) <= same_within &&
+                          (before == 0.0) == (after == 0.0));
+      else if (row > run.begin || end < run.end)
+        known = known || end - row <= limit.bridged_rows ||
+                (inside && std::abs(after - before) <= limit.slow_noise * noise);
       if (!untold.empty() && end - row > limit.bridged_rows)
         known = known && std::find(untold.begin() + row, untold.begin() + end, 1) == untold.begin() + end;
       for (Eigen::Index i = row; i < end; ++i) {
@@ -344,8 +335,7 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
           filled[i] = std::isfinite(before) ? before : after;
         else filled[i] = before + (after - before) * (t_s[i] - t_s[row - 1]) / (t_s[end] - t_s[row - 1]);
       }
-      row = end;
-    }
+    });
   return filled;
 }
 

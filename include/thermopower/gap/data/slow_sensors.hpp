@@ -15,8 +15,8 @@
 #include <vector>
 
 /// @file slow_sensors.hpp
-/// Sensors that speak less often than a log has rows: those whose last word is repeated until the next, those between whose
-/// words somebody drew straight lines, and an angle and a rate that never stand in the same row.
+/// Sensors that speak less often than a log has rows: those whose last word is repeated until the next, those
+/// between whose words somebody drew straight lines, and an angle and a rate that never stand in the same row.
 
 namespace thermopower::gap::engine {
 
@@ -103,8 +103,9 @@ inline std::optional<SlowColumn> held_between_updates(const Eigen::VectorXd& val
   return held;
 }
 
-/// What each value of a column is rounded to: a power of ten for all from one power of ten to the next, since who writes
-/// six digits rounds 99.9 and 100.1 differently; or what a double holds. 0 of zeros and of what is missing.
+/// The unit to which each value of a column is rounded: a power of ten for all from one power of ten to the next,
+/// since who writes six digits rounds 99.9 and 100.1 differently; or what a double holds. 0 of zeros and of what is
+/// missing.
 inline Eigen::VectorXd roundings_of(const Eigen::VectorXd& values) {
   std::map<int, std::vector<Eigen::Index>> decades;
   for (Eigen::Index i = 0; i < values.size(); ++i)
@@ -192,7 +193,8 @@ inline double median_distance_s(const Eigen::VectorXd& t_s, const std::vector<Ru
   return median_of(distances);
 }
 
-/// What a column is in the rows in which it has no sample: on the cubic through two samples before and two after, inside a run.
+/// The values of a column in the rows in which it has no sample: on the cubic through two samples before and two
+/// after, inside a run.
 /// @return NaN where there are no such samples, and where they lie further apart than usual
 inline Eigen::VectorXd between_samples(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
                                        const Eigen::VectorXd& values) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -13,20 +14,11 @@ namespace thermopower::gap::engine {
 
 /// Indices of numbers from the least to the largest; equal ones in the order in which they stand.
 inline std::vector<std::size_t> ascending(const std::vector<double>& numbers) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < numbers.size(); ++i) order.push_back(i);
+  std::vector<std::size_t> order(numbers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
   return order;
-}
-
-/// Puts items into an order. @param order  index of each place's item
-template <class Item>
-void reorder(std::vector<Item>& items, const std::vector<std::size_t>& order) {
-  std::vector<Item> sorted;
-  sorted.reserve(items.size());
-  for (const std::size_t index : order) sorted.push_back(std::move(items[index]));
-  items = std::move(sorted);
 }
 
 /// Sorts items by a number that each has, the least first; equal ones stay in the order in which they stand.
@@ -38,7 +30,9 @@ void sort_by(std::vector<Item>& items, Key&& key) {
     const double number = static_cast<double>(key(one));
     numbers.push_back(std::isnan(number) ? std::numeric_limits<double>::infinity() : number);
   }
-  reorder(items, ascending(numbers));
+  std::vector<Item> sorted;
+  for (const std::size_t index : ascending(numbers)) sorted.push_back(std::move(items[index]));
+  items = std::move(sorted);
 }
 
 }  // namespace thermopower::gap::engine

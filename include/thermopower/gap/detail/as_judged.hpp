@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -31,14 +32,10 @@ public:
 
   /// Whether an explanation lowers the error of some signal by a fifth on the data it was fitted to.
   bool lowers(const Candidate& one) const {
-    const std::vector<Segment> segments = posing_.judged(train_);
-    const Errors before = errors_of(model_, segments, catalogue_),
-                 after = errors_of(model_of(one), segments, catalogue_);
-    for (int i = 0; i < signal_count; ++i)
-      if (after.rms(static_cast<Signal>(i)) <
-          decision.lowered_without_costly * before.rms(static_cast<Signal>(i)))
-        return true;
-    return false;
+    const auto errors = training_errors(model_of(one));
+    return std::any_of(errors.begin(), errors.end(), [](const BeforeAfter& signal) {
+      return signal.after < decision.lowered_without_costly * signal.before;
+    });
   }
 
   /// The model with its constants refitted: the best explanation by constants alone, or as configured where that
@@ -49,15 +46,9 @@ public:
       if (one.explanation.effects.empty() && fitness(one) < fitness(*best)) best = &one;
     fine.polish(*best, {});
     const Model fitted = model_of(*best);
-    const std::vector<Segment> segments = posing_.judged(train_);
-    const Errors before = errors_of(model_, segments, catalogue_),
-                 after = errors_of(fitted, segments, catalogue_);
     double worse = 0.0;
-    for (int i = 0; i < signal_count; ++i) {
-      const Signal signal = static_cast<Signal>(i);
-      if (before.rms(signal) > 0.0 && after.rms(signal) > 0.0)
-        worse += std::log(after.rms(signal) / before.rms(signal));
-    }
+    for (const auto& [before, after] : training_errors(fitted))
+      if (before > 0.0 && after > 0.0) worse += std::log(after / before);
     return worse > 0.0 ? model_ : fitted;
   }
 
@@ -73,14 +64,9 @@ public:
     const Model best = model_of(attempt.best());
     const Model& witness = follows_its_data(attempt.best()) ? best : model_;
     const Errors errors = errors_of(best, segments, catalogue_);
-    const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_),
-                                           floor = floor_of(witness, errors, sigma, segments, catalogue_,
-                                                            FirstReadings::within_their_noise);
+    const Yardstick yardstick = yardstick_of(witness, errors, segments);
     for (std::size_t i = 0; i < signal_count; ++i)
       if (!errors.of[i].empty()) attempt.weight.held_out[i] = correlation_samples(errors.of[i]);
-    // Of two explanations one may fit starts that nobody measures: then both may move the measured one within its
-    // noise, or a wrong first reading speaks for hidden nodes.
-    const auto scored = [&](const Model& model) { return sums_of(model, segments, sigma, floor); };
     const std::vector<std::size_t> order = by_fitness(candidates, 0);
     std::vector<std::size_t> looked_at;
     std::size_t single = 0;
@@ -100,14 +86,13 @@ public:
     in_parallel(looked_at.size(), posing_.options().threads, [&](std::size_t i) {
       Candidate& one = candidates[looked_at[i]];
       const Model model = model_of(one);
-      one.held_out = scored(model);
+      one.held_out = sums_of(model, segments, yardstick);
       fine.survey(one);
       const auto rollout = plant_of(model).rollout(model, catalogue_, {}, {}, SimulationMode::free_running);
       for (const Segment& segment : segments)
         one.hidden_starts += static_cast<int>(rollout->hidden_starts(segment).size());
     });
-    attempt.reference.as_configured = scored(model_);
-    attempt.reference.recalibrated = scored(attempt.recalibrated);
+    refer(attempt, segments, yardstick);
   }
 
   /// Scores some candidates on held-out data: nothing missing, the chosen one, and the likeliest.
@@ -115,27 +100,22 @@ public:
     constexpr std::size_t most = 10;
     const std::vector<Segment> segments = posing_.judged(held_out_);
     const Model best = model_of(attempt.candidates[chosen]);
-    const Errors errors = errors_of(best, segments, catalogue_);
-    const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_);
-    const std::array<double, signal_count> floor =
-        floor_of(best, errors, sigma, segments, catalogue_, FirstReadings::within_their_noise);
-    const auto scored = [&](const Model& model) { return sums_of(model, segments, sigma, floor); };
+    const Yardstick yardstick = yardstick_of(best, errors_of(best, segments, catalogue_), segments);
     std::vector<std::size_t> order(attempt.candidates.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::iota(order.begin(), order.end(), std::size_t{0});
     sort_by(order,
             [&](std::size_t i) { return i == 0 || i == chosen ? -2.0 : -attempt.candidates[i].probability; });
     order.resize(std::min(order.size(), most));
     in_parallel(order.size(), posing_.options().threads, [&](std::size_t i) {
       Candidate& one = attempt.candidates[order[i]];
-      one.held_out = scored(model_of(one));
+      one.held_out = sums_of(model_of(one), segments, yardstick);
     });
-    attempt.reference.as_configured = scored(model_);
-    attempt.reference.recalibrated = scored(attempt.recalibrated);
+    refer(attempt, segments, yardstick);
   }
 
-  /// What held-out motion says against candidates, nats: how much worse than the best of those with a name they predict it from
-  /// starts as measured. A window counts once, since its errors go together. In a closed loop a heavy axis predicts motion well, and
-  /// true causes somewhat worse: that far nothing is said.
+  /// The evidence of held-out motion against candidates, in nats: how much worse than the best of those with a name
+  /// they predict it from starts as measured. A window counts once, since its errors go together. In a closed loop
+  /// a heavy axis predicts motion well, and true causes somewhat worse: that far nothing is said.
   Eigen::VectorXd lost_in_motion(const std::vector<Candidate>& candidates) const {
     constexpr double somewhat_worse = 1.5;  // times; cogging of a real motor under a stiff loop makes 1.3
     const std::vector<Segment> segments = posing_.judged(held_out_);
@@ -151,7 +131,8 @@ public:
     return (nats.array() - unheard).max(0.0);
   }
 
-  /// Whether a candidate predicts held-out motion so much worse than the model as configured that it closes nothing there.
+  /// Whether a candidate predicts held-out motion so much worse than the model as configured that it closes nothing
+  /// there.
   bool opens_the_gap(const Candidate& one) const {
     constexpr double times = 3.0;  // a wrist behind a torque sensor makes 2.3 with its true friction
     const std::vector<Segment> segments = posing_.judged(held_out_);
@@ -159,6 +140,23 @@ public:
   }
 
 private:
+  /// RMS errors of a signal: of the model as configured, and of another one; in the signal's unit.
+  struct BeforeAfter {
+    double before, after;
+  };
+
+  /// Those on the training data.
+  std::array<BeforeAfter, signal_count> training_errors(const Model& other) const {
+    const std::vector<Segment> segments = posing_.judged(train_);
+    const Errors before = errors_of(model_, segments, catalogue_),
+                 after = errors_of(other, segments, catalogue_);
+    std::array<BeforeAfter, signal_count> errors{};
+    for (int i = 0; i < signal_count; ++i)
+      errors[static_cast<std::size_t>(i)] = {before.rms(static_cast<Signal>(i)),
+                                             after.rms(static_cast<Signal>(i))};
+    return errors;
+  }
+
   /// The mean over the signals of the logarithm of their RMS errors.
   double log_error(const Model& model, const std::vector<Segment>& segments) const {
     const Errors errors = errors_of(model, segments, catalogue_);
@@ -171,14 +169,34 @@ private:
     return sum / std::max(signals, 1.0);
   }
 
-  /// What a model leaves of some segments, in units of the noise floor; starts are fitted within the noise.
+  /// The noise of each signal, and the error of a perfect model; both in the signal's unit.
+  struct Yardstick {
+    std::array<double, signal_count> sigma, floor;
+  };
+
+  /// @param witness  follows its data  @param errors  of the best explanation
+  Yardstick yardstick_of(const Model& witness, const Errors& errors,
+                         const std::vector<Segment>& segments) const {
+    const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_);
+    return {sigma, floor_of(witness, errors, sigma, segments, catalogue_, FirstReadings::within_their_noise)};
+  }
+
+  /// The errors of a model in some segments, in units of the noise floor. Of two explanations one may fit starts
+  /// that nobody measures: then both may move the measured one within its noise, or a wrong first reading speaks
+  /// for hidden nodes.
   SignalSums sums_of(const Model& model, const std::vector<Segment>& segments,
-                     const std::array<double, signal_count>& sigma,
-                     const std::array<double, signal_count>& floor) const {
-    const Errors own = errors_of(model, segments, catalogue_, &sigma);
+                     const Yardstick& yardstick) const {
+    const Errors own = errors_of(model, segments, catalogue_, &yardstick.sigma);
     SignalSums sums;
-    for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
+    for (std::size_t i = 0; i < signal_count; ++i)
+      sums.set(i, own.of[i], std::max(yardstick.floor[i], 1e-12));
     return sums;
+  }
+
+  /// Scores what explanations are compared with: the model as configured, and with refitted constants.
+  void refer(Attempt& attempt, const std::vector<Segment>& segments, const Yardstick& yardstick) const {
+    attempt.reference = {sums_of(model_, segments, yardstick),
+                         sums_of(attempt.recalibrated, segments, yardstick)};
   }
 
   Model model_of(const Candidate& one) const {

@@ -30,20 +30,13 @@
 namespace thermopower::gap::engine {
 
 /// Adds findings to others.
-inline void append(std::vector<Finding>& findings, std::vector<Finding> more) {
-  for (Finding& one : more) findings.push_back(std::move(one));
+inline void append(std::vector<Finding>& findings, const std::vector<Finding>& more) {
+  findings.insert(findings.end(), more.begin(), more.end());
 }
 
-/// Hands the recordings, in training and held out, that `is_asked` says yes to, to `use`.
-template <class IsAsked, class Use>
-void for_each_recording(CheckedRecordings& checked, IsAsked&& is_asked, Use&& use) {
-  for (auto* all : {&checked.train, &checked.held_out})
-    for (PreparedRecording& one : *all)
-      if (is_asked(one)) use(one);
-}
-
-/// Reads a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate, earlier by as much
-/// where that is less than half a row, or where the two differ by more than the lag; else leaves it out.
+/// Reads a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate,
+/// earlier by as much where that is less than half a row, or where the two differ by more than the lag; else leaves
+/// it out.
 inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::vector<Finding>& findings) {
   if (!model.has_axis()) return;
   RateLag rate_lag;
@@ -55,51 +48,43 @@ inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::
   const std::string words =
       "comes " + short_number(lag_s) +
       (*found.lag_s > 0.0 ? " s behind the slope of angle_deg" : " s behind what rate_dps sums up to");
-  const auto has_both = [](const PreparedRecording& one) {
-    return one.inputs().judged(Signal::angle_deg) && one.inputs().judged(Signal::rate_dps);
-  };
-  for_each_recording(checked, has_both, [&](PreparedRecording& one) {
-    const bool kept = found.differ_by_more || lag_s <= LagThresholds().within_a_row * one.interval_s();
+  for (PreparedRecording* const one : checked.all()) {
+    if (!one->inputs().judged(Signal::angle_deg) || !one->inputs().judged(Signal::rate_dps)) continue;
+    const bool kept = found.differ_by_more || lag_s <= LagThresholds().within_a_row * one->interval_s();
     findings.push_back(
-        {FindingKind::lagging_output,
-         kept ? Severity::note : Severity::warning,
-         one.recording().name,
-         late,
+        {FindingKind::lagging_output, kept ? Severity::note : Severity::warning, one->recording().name, late,
          words + ": filtered, or read later; it is " + (kept ? "read that much earlier" : "not judged"),
          "log it unfiltered and with the instant it is of",
-         kept ? FindingAction::none : FindingAction::masked,
-         {}});
-    if (kept) one.read_earlier_by(model, late, lag_s);
-    else one.leave_out(model, late, plant::the_variable(late) + " is not judged: it " + words);
-  });
+         kept ? FindingAction::none : FindingAction::masked});
+    if (kept) one->read_earlier_by(model, late, lag_s);
+    else one->leave_out(model, late, plant::the_variable(late) + " is not judged: it " + words);
+  }
 }
 
-/// Chooses the units of all recordings. What else the columns say is asked only where their units are right.
+/// Chooses the units of all recordings. Other questions to the columns are asked only where their units are right.
 /// @param spans  given_spans() of the recordings in training, then of those held out
-inline void check_units(const Model& model, const CheckedRecordings& checked,
+inline void check_units(const Model& model, CheckedRecordings& checked,
                         const std::vector<std::vector<RunSpan>>& spans, const Catalogue& catalogue,
                         double most_power, std::vector<Finding>& findings) {
   // Nobody but its author knows the units of the columns of a plant of one's own.
   if (model.own) return;
   UnitChoice units(model, catalogue, most_power);
   std::size_t at = 0;
-  for (const auto* all : {&checked.train, &checked.held_out})
-    for (const PreparedRecording& one : *all) units.add(one, spans[at++]);
+  for (const PreparedRecording* const one : checked.all()) units.add(*one, spans[at++]);
   std::vector<Finding> found;
   units.find(found);
-  if (!found.empty() && holds(Rule::units)) append(findings, std::move(found));
+  if (!found.empty() && holds(Rule::units)) append(findings, found);
   if (!units.is_as_expected()) return;
   std::vector<Finding> detached;
   check_motion_sensors(model, checked.train,
-                       [&](std::vector<Finding> some) { append(detached, std::move(some)); });
-  for (const auto* all : {&checked.train, &checked.held_out})
-    for (const PreparedRecording& one : *all) {
-      FindingList list(one.recording());
-      check_thermometer(model, one, catalogue, list);
-      check_current_clock(model, one, catalogue, list);
-      append(detached, list.take());
-    }
-  if (!detached.empty() && holds(Rule::detached_sensors)) append(findings, std::move(detached));
+                       [&](const std::vector<Finding>& some) { append(detached, some); });
+  for (const PreparedRecording* const one : checked.all()) {
+    FindingList list(one->recording());
+    check_thermometer(model, *one, catalogue, list);
+    check_current_clock(model, *one, catalogue, list);
+    append(detached, list.take());
+  }
+  if (!detached.empty() && holds(Rule::detached_sensors)) append(findings, detached);
 }
 
 /// Lets the target of a servo go on between the rows where the training recordings say that it did.
@@ -114,19 +99,16 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
     if (is_closed(one)) between.add(one.inputs());
   const auto share = between.steady();
   if (!share || !holds(Rule::target_between_rows)) return;
-  for_each_recording(checked, is_closed, [&](PreparedRecording& one) {
-    findings.push_back({FindingKind::sampled_command,
-                        Severity::note,
-                        one.recording().name,
-                        one.inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
+  for (PreparedRecording* const one : checked.all()) {
+    if (!is_closed(*one)) continue;
+    findings.push_back({FindingKind::sampled_command, Severity::note, one->recording().name,
+                        one->inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
                         "went on between the rows, as the motion shows: the servo is given what lies " +
                             short_number(100.0 * share->value) +
                             " % of the way to the next row's, on average",
-                        "log the target at the rate it is set",
-                        FindingAction::none,
-                        {}});
-    one.take_targets_between(model, share->value);
-  });
+                        "log the target at the rate it is set"});
+    one->take_targets_between(model, share->value);
+  }
 }
 
 /// Whether a recording is of an axis whose command was logged.
@@ -139,20 +121,22 @@ inline const Eigen::VectorXd& command_of(const Model& model, const PreparedRecor
   return plant::command(one.inputs(), model.axis->voltage_driven());
 }
 
-/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show which, by
-/// what the motion makes of earlier commands in the training recordings. Comes before what is said of the command between the rows.
+/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show
+/// which, by what the motion makes of earlier commands in the training recordings. Comes before what is said of the
+/// command between the rows.
 inline void read_what_drove_before(const Model& model, CheckedRecordings& checked) {
   if (!model.has_axis()) return;
   DrivenBefore before;
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) before.add(one.inputs(), command_of(model, one));
-  for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
-    const std::vector<RunSpan>& runs = one.inputs().runs;
+  for (PreparedRecording* const one : checked.all()) {
+    if (!is_commanded(*one)) continue;
+    const std::vector<RunSpan>& runs = one->inputs().runs;
     for (std::size_t i = 0; i < runs.size(); ++i)
-      if (const auto was = before.was(one.inputs(), command_of(model, one), runs[i]);
+      if (const auto was = before.was(one->inputs(), command_of(model, *one), runs[i]);
           was && !runs[i].goes_on && holds(Rule::driven_before))
-        one.set_driven_before(i, *was);
-  });
+        one->set_driven_before(i, *was);
+  }
 }
 
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
@@ -165,25 +149,25 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
   const double noise = between.noise();
   const auto share = between.steady();
   if ((!share && !(noise > 0.0)) || !holds(Rule::command_between_rows)) return;
-  for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
-    const std::string column = command_column(one.inputs());
+  for (PreparedRecording* const one : checked.all()) {
+    if (!is_commanded(*one)) continue;
+    const std::string column = command_column(one->inputs());
     const auto note = [&](FindingKind kind, const std::string& message, const char* mend) {
-      findings.push_back(
-          {kind, Severity::note, one.recording().name, column, message, mend, FindingAction::none, {}});
+      findings.push_back({kind, Severity::note, one->recording().name, column, message, mend});
     };
     if (share) {
       note(FindingKind::sampled_command,
            "went on between the rows, as the motion shows: its mean until the next row is taken, " +
                short_number(100.0 * share->value) + " % of the way to that one's",
            "log the command at the rate it is set, or the mean of it between the rows");
-      const Eigen::VectorXd& command = command_of(model, one);
-      const std::vector<RunSpan> runs = one.recording().spans();
+      const Eigen::VectorXd& command = command_of(model, *one);
+      const std::vector<RunSpan> runs = one->recording().spans();
       const Eigen::VectorXd steps = steps_of(command, runs);
       UnknownCommand unknown;
       if (!(noise > 0.0)) unknown.between = unknown_between(command, steps, runs);
       constexpr double sure = 2.0;  // standard errors: 95 %
       unknown.shift = sure * share->error * steps;
-      one.take_command(model, column, mean_command(command, runs, share->value), std::move(unknown));
+      one->take_command(model, column, mean_command(command, runs, share->value), std::move(unknown));
     }
     if (noise > 0.0) {
       const char* unit = model.axis->voltage_driven() ? " V" : " A";
@@ -191,9 +175,9 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
            "has noise of " + short_number(noise) + unit +
                " that no motion follows: what a simulation wanders by it counts as noise",
            "log the command that was sent, not the current that was measured");
-      one.set_command_noise(noise);
+      one->set_command_noise(noise);
     }
-  });
+  }
 }
 
 /// Takes off the heat of a bench what its current sensor reads where nothing flows in the training recordings, in all
@@ -215,23 +199,20 @@ inline void read_current_noise(const Model& model, CheckedRecordings& checked,
                 one.inputs().runs);
   const std::optional<double> sd_A = noise.sd_A();
   if (!sd_A || !holds(Rule::current_noise)) return;
-  for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
-    findings.push_back({FindingKind::noisy_command,
-                        Severity::note,
-                        one.recording().name,
-                        heat_column(one.inputs()),
+  for (PreparedRecording* const one : checked.all()) {
+    if (!is_heated(*one)) continue;
+    findings.push_back({FindingKind::noisy_command, Severity::note, one->recording().name,
+                        heat_column(one->inputs()),
                         "has noise of " + short_number(*sd_A) +
                             " A where nothing flows: its square is taken off the heat, and what a simulation "
                             "wanders by the rest of it counts as noise",
-                        "log the mean square of the current between the rows",
-                        FindingAction::none,
-                        {}});
-    one.set_current_noise(*sd_A);
-  });
+                        "log the mean square of the current between the rows"});
+    one->set_current_noise(*sd_A);
+  }
 }
 
-/// Lets the power of a bench be switched when the training recordings say that it was and the held-out ones do not say otherwise, in
-/// all recordings.
+/// Lets the power of a bench be switched when the training recordings say that it was and the held-out ones do not
+/// say otherwise, in all recordings.
 inline void read_when_switched(const Model& model, CheckedRecordings& checked, const Catalogue& catalogue,
                                std::vector<Finding>& findings) {
   if (model.own || !model.has_thermal()) return;
@@ -251,17 +232,18 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
   const HeatBetweenRows between = seen_in(checked.train);
   const std::optional<double> share = between.share();
   if (!share || between.differs_from(seen_in(checked.held_out)) || !holds(Rule::heat_between_rows)) return;
-  for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
-    findings.push_back(switched_between_rows(one.recording().name, one.inputs(), *share));
-    one.take_next_before_it(switched_share(one.inputs(), heat_of(one), *share));
-  });
+  for (PreparedRecording* const one : checked.all()) {
+    if (!is_heated(*one)) continue;
+    findings.push_back(switched_between_rows(one->recording().name, one->inputs(), *share));
+    one->take_next_before_it(switched_share(one->inputs(), heat_of(*one), *share));
+  }
 }
 
 THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<Recording> train,
                                                std::vector<Recording> held_out, const CheckOptions& options,
                                                const Catalogue& catalogue) {
   CheckedRecordings result;
-  std::vector<Finding> others;
+  std::vector<Finding>& findings = result.findings;
   double most_power = 0.0;
   for (auto* all : {&train, &held_out})
     for (Recording& one : *all) {
@@ -276,33 +258,30 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
     for (Recording& one : recordings) {
       spans.push_back(given_spans(one));
       to.emplace_back(model, one, options.as_recorded);
-      const std::vector<Finding>& own = to.back().findings();
-      others.insert(others.end(), own.begin(), own.end());
+      append(findings, to.back().findings());
       one = Recording();
     }
   };
   take(train, result.train);
   take(held_out, result.held_out);
-  check_units(model, result, spans, catalogue, most_power, others);
-  leave_out_what_is_dead(model, result, options.as_recorded, others);
+  check_units(model, result, spans, catalogue, most_power, findings);
+  leave_out_what_is_dead(model, result, options.as_recorded, findings);
   if (!options.as_recorded) {
-    mend_what_lags(model, result, others);
+    mend_what_lags(model, result, findings);
     read_what_drove_before(model, result);
-    read_between_rows(model, result, options.horizon_s, others);
-    read_targets_between_rows(model, result, catalogue, others);
-    read_current_noise(model, result, others);
-    read_when_switched(model, result, catalogue, others);
+    read_between_rows(model, result, options.horizon_s, findings);
+    read_targets_between_rows(model, result, catalogue, findings);
+    read_current_noise(model, result, findings);
+    read_when_switched(model, result, catalogue, findings);
   }
-  for (Finding& finding : check_experiment(result.train, result.held_out, options.horizon_s))
-    others.push_back(std::move(finding));
+  append(findings, check_experiment(result.train, result.held_out, options.horizon_s));
   // A horizon or a rest that does not fit says nothing of its own where the unit of a column is wrong.
   const auto rank = [](const Finding& one) {
     const bool unit = one.kind == FindingKind::wrong_unit || one.kind == FindingKind::wrong_sign ||
                       one.kind == FindingKind::swapped_columns;
     return one.severity != Severity::error ? 2 : unit ? 0 : 1;
   };
-  sort_by(others, rank);
-  result.findings = std::move(others);
+  sort_by(findings, rank);
   return result;
 }
 

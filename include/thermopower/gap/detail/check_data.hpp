@@ -6,6 +6,7 @@
 #include <thermopower/gap/detail/check.hpp>
 #include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/data/neighbour_motion.hpp>
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/fit/judgeable.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,14 +43,10 @@ inline Recording sampled(const Recording& recording, bool axis) {
     else rows.resize(static_cast<std::size_t>(begin));
   };
   for (const RunSpan& run : recording.spans()) {
-    if (!axis) {
-      add(run.begin, run.end, run.label);
-      continue;
-    }
-    for (Eigen::Index p = 0; p < parts; ++p) {
+    if (!axis) add(run.begin, run.end, run.label);
+    for (Eigen::Index p = 0; axis && p < parts; ++p) {
       const Eigen::Index begin = p * (recording.rows() - most / parts) / (parts - 1);
-      const Eigen::Index from = std::max(begin, run.begin), end = std::min(begin + most / parts, run.end);
-      if (from < end) add(from, end, run.label);
+      add(std::max(begin, run.begin), std::min(begin + most / parts, run.end), run.label);
     }
   }
   const auto count = static_cast<Eigen::Index>(rows.size());
@@ -118,7 +116,7 @@ public:
     base_ = of(model);
   }
 
-  /// What was measured of each signal.
+  /// The measured part of each signal.
   const std::vector<SignalReport>& signals() const { return signals_; }
   /// The model's own response.
   const Eigen::VectorXd& base() const { return base_; }
@@ -164,38 +162,28 @@ private:
 
 /// Whether a need is a column of the recording.
 inline bool is_column(plant::Need need) {
-  switch (need) {
-    case plant::Need::current_A:
-    case plant::Need::motor_C:
-    case plant::Need::angle_deg:
-    case plant::Need::rate_dps:
-    case plant::Need::power_param:
-    case plant::Need::airspeed_mps:
-    case plant::Need::neighbour_C:
-      return true;
-    default:
-      return false;
-  }
+  constexpr plant::Need columns[] = {
+      plant::Need::current_A,   plant::Need::motor_C,      plant::Need::angle_deg,  plant::Need::rate_dps,
+      plant::Need::power_param, plant::Need::airspeed_mps, plant::Need::neighbour_C};
+  return std::find(std::begin(columns), std::end(columns), need) != std::end(columns);
 }
 
 /// A parameter of usual size: where fits begin.
 inline double usual_size(const Parameter& parameter, const Model& model, const Recording& recording) {
   assert(!parameter.starts.empty() && parameter.lower <= parameter.upper);
   double value = parameter.starts.front();
-  const bool voltage_driven = model.axis && model.axis->voltage_driven();
-  const char* const input = parameter.starts_relative_to == plant::Input::drive_A
-                                ? (voltage_driven ? "voltage_V" : "drive_A")
+  const bool is_drive = parameter.starts_relative_to == plant::Input::drive_A;
+  const bool voltage_driven = is_drive && model.axis && model.axis->voltage_driven();
+  const char* const input = is_drive ? (voltage_driven ? "voltage_V" : "drive_A")
                             : parameter.starts_relative_to == plant::Input::power_param ? "power_param"
                             : parameter.starts_relative_to == plant::Input::supply_V    ? "supply_V"
                                                                                         : nullptr;
-  if (input != nullptr && !recording.has(input) && parameter.starts_relative_to == plant::Input::drive_A &&
-      model.has_servo()) {
-    value *= model.get("servo.limit_A");
-  } else if (input != nullptr && recording.has(input)) {
+  if (input != nullptr && recording.has(input)) {
     std::vector<double> sizes = finite_samples(recording.column(input).cwiseAbs());
     value *= quantile_of(sizes, 1.0);
-    if (parameter.starts_relative_to == plant::Input::drive_A && voltage_driven)
-      value /= model.axis->resistance_ohm;  // as a current at standstill
+    if (voltage_driven) value /= model.axis->resistance_ohm;  // as a current at standstill
+  } else if (is_drive && model.has_servo()) {
+    value *= model.get("servo.limit_A");
   }
   constexpr double of_range = 0.1;
   if (value == 0.0) value = of_range * (parameter.upper > 0.0 ? parameter.upper : parameter.lower);
@@ -250,8 +238,7 @@ inline Eigen::MatrixXd judge_constants(const Model& model, const Responses& resp
     }
     report.only_together.push_back(std::move(weak));
   }
-  std::stable_sort(report.only_together.begin(), report.only_together.end(),
-                   [](const Combination& a, const Combination& b) { return a.sd > b.sd; });
+  sort_by(report.only_together, [](const Combination& one) { return -one.sd; });
   return slopes;
 }
 
@@ -270,11 +257,10 @@ inline void judge_effects(const Model& model, const Recording& recording, const 
     if (model.effects.count(entry.info.id) > 0) continue;
     const bool concerns = (entry.hooks.any_bench() && bench) || (entry.hooks.any_axis() && axis);
     if (!can_be_judged(entry, model, inputs)) {
-      std::string needs;
+      std::vector<std::string> needs;
       for (const plant::Need need : entry.info.needs)
-        if (is_column(need) && !recording.has(to_string(need)))
-          needs += (needs.empty() ? "" : ", ") + std::string(to_string(need));
-      if (concerns && !needs.empty()) report.need_columns.push_back(entry.info.id + ": " + needs);
+        if (is_column(need) && !recording.has(to_string(need))) needs.push_back(to_string(need));
+      if (concerns && !needs.empty()) report.need_columns.push_back(entry.info.id + ": " + listed(needs));
       continue;
     }
     Model with = model;
@@ -305,8 +291,7 @@ inline void judge_effects(const Model& model, const Recording& recording, const 
       if (std::abs(signatures[a].dot(signatures[b])) > limit.alike * norm)
         report.effects[a].alike.push_back(report.effects[b].effect);
     }
-  std::stable_sort(report.effects.begin(), report.effects.end(),
-                   [](const EffectReport& a, const EffectReport& b) { return a.visible > b.visible; });
+  sort_by(report.effects, [](const EffectReport& one) { return -one.visible; });
 }
 
 }  // namespace engine
@@ -328,9 +313,7 @@ THERMOPOWER_GAP_INLINE DataReport check_data(const Model& model, const std::vect
     inputs.push_back(one.inputs());
     if (one.recording().rows() > longest->recording().rows()) longest = &one;
   }
-  std::vector<const Inputs*> all;
-  for (const Inputs& one : inputs) all.push_back(&one);
-  report.not_judged = engine::not_judged_in(all);
+  report.not_judged = engine::not_judged_in({&inputs});
   std::vector<Inputs> judged_on;
   for (const engine::PreparedRecording& one : checked.held_out) judged_on.push_back(one.inputs());
   report.too_little = engine::lacking(model, inputs, false, options.horizon_s, report.next_experiment);

@@ -8,16 +8,16 @@
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
 
 /// @file dead_columns.hpp
-/// Outputs that stand still over a whole recording in which what drives them moves. Any gain or offset explains such a column,
-/// and nothing in it tells which: it is left out.
+/// Outputs that stand still over a whole recording in which what drives them moves. Any gain or offset explains
+/// such a column, and nothing in it tells which: it is left out.
 
 namespace thermopower::gap::engine {
 
@@ -30,14 +30,14 @@ struct DeadColumnThresholds {
   double tail = 0.02;               ///< of a command's samples at either end are not counted: spikes
 };
 
-/// What drives an output, and how far it goes.
+/// The column that drives an output, and how far it goes.
 struct DrivingColumn {
   std::string name;      ///< of the column
   double range = 0.0;    ///< that it goes through
   double largest = 0.0;  ///< magnitude
 };
 
-/// What drives an output of a recording; a range of 0 where nothing does.
+/// The column that drives an output of a recording; a range of 0 where none does.
 inline DrivingColumn driving(const Model& model, const Inputs& inputs, Signal signal) {
   const bool current = signal == Signal::current_A;
   assert(current || inputs.closed_loop || model.axis);
@@ -61,46 +61,47 @@ inline bool stands_still(const Eigen::VectorXd& values) {
          std::all_of(list.begin(), list.end(), [&](double one) { return one == list.front(); });
 }
 
-/// Leaves outputs out that stand still in a recording though what drives them moves: a sensor that nobody reads, or an axis that
-/// static friction holds throughout. Where nothing is left to judge in the training recordings, or in those held out, that is an
-/// error. Said of a column so, what else was found in it says nothing.
+/// Leaves outputs out that stand still in a recording though what drives them moves: a sensor that nobody reads, or
+/// an axis that static friction holds throughout. Where nothing is left to judge in the training recordings, or in
+/// those held out, that is an error. Said of a column so, what else was found in it says nothing.
 /// @param as_recorded  it is said, and nothing is left out
 inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checked, bool as_recorded,
                                    std::vector<Finding>& findings) {
   if (model.own) return;
   constexpr Signal signals[] = {Signal::current_A, Signal::angle_deg, Signal::rate_dps};
-  double largest[signal_count] = {};
   constexpr double never = std::numeric_limits<double>::infinity();
-  double least_that_moves[signal_count];  // the weakest drive of a recording in which the output lives
-  std::fill(std::begin(least_that_moves), std::end(least_that_moves), never);
-  for (const auto* all : {&checked.train, &checked.held_out})
-    for (const PreparedRecording& one : *all)
+  struct Drives {
+    double largest = 0.0;             // of all recordings
+    double least_that_moves = never;  // of the recordings in which the output lives
+    bool is_dead = false;             // in every recording, and in some of them it cannot be
+  };
+  std::array<Drives, signal_count> drives_of;
+  const auto drives = [&](Signal signal) -> Drives& { return drives_of[static_cast<std::size_t>(signal)]; };
+  const auto for_each_judged = [&](auto&& use) {
+    for (const PreparedRecording* const one : checked.all())
       for (const Signal signal : signals)
-        if (one.inputs().judged(signal)) {
-          const auto at = static_cast<std::size_t>(signal);
-          const double by = driving(model, one.inputs(), signal).largest;
-          largest[at] = std::max(largest[at], by);
-          if (!stands_still(one.inputs().of(signal)))
-            least_that_moves[at] = std::min(least_that_moves[at], by);
-        }
-  // What moves it elsewhere moves it here. An axis that is driven less may be held by friction, and its standstill tells how large
-  // that is.
+        if (one->inputs().judged(signal)) use(one->inputs(), signal, driving(model, one->inputs(), signal));
+  };
+  for_each_judged([&](const Inputs& inputs, Signal signal, const DrivingColumn& by) {
+    Drives& all = drives(signal);
+    all.largest = std::max(all.largest, by.largest);
+    if (!stands_still(inputs.of(signal))) all.least_that_moves = std::min(all.least_that_moves, by.largest);
+  });
+  // A drive that moves it elsewhere moves it here. An axis that is driven less may be held by friction, and its
+  // standstill tells how large that is.
   const auto must_move = [&](const Inputs& inputs, Signal signal, const DrivingColumn& by) {
     constexpr DeadColumnThresholds limit;
-    const auto at = static_cast<std::size_t>(signal);
     const auto rests = [&](Signal one) { return !inputs.judged(one) || stands_still(inputs.of(one)); };
+    const double least_that_moves = drives(signal).least_that_moves;
     const bool may_be_held = signal != Signal::current_A && rests(Signal::angle_deg) &&
-                             rests(Signal::rate_dps) && least_that_moves[at] < never &&
-                             by.largest < limit.as_hard * least_that_moves[at];
-    return by.range > limit.much * largest[at] && !may_be_held;
+                             rests(Signal::rate_dps) && least_that_moves < never &&
+                             by.largest < limit.as_hard * least_that_moves;
+    return by.range > limit.much * drives(signal).largest && !may_be_held;
   };
-  bool is_dead[signal_count] = {};  // in every recording, and in some of them it cannot be
-  for (const auto* all : {&checked.train, &checked.held_out})
-    for (const PreparedRecording& one : *all)
-      for (const Signal signal : signals)
-        if (one.inputs().judged(signal) && least_that_moves[static_cast<std::size_t>(signal)] == never &&
-            must_move(one.inputs(), signal, driving(model, one.inputs(), signal)))
-          is_dead[static_cast<std::size_t>(signal)] = true;
+  for_each_judged([&](const Inputs& inputs, Signal signal, const DrivingColumn& by) {
+    Drives& all = drives(signal);
+    all.is_dead = all.is_dead || (all.least_that_moves == never && must_move(inputs, signal, by));
+  });
   std::vector<Finding> dead;
   for (auto* all : {&checked.train, &checked.held_out}) {
     const std::size_t first = dead.size();
@@ -113,12 +114,10 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
       for (const Signal signal : signals) {
         if (!one.inputs().judged(signal) || !stands_still(one.inputs().of(signal))) continue;
         const DrivingColumn by = driving(model, one.inputs(), signal);
-        if (!is_dead[static_cast<std::size_t>(signal)] && !must_move(one.inputs(), signal, by)) continue;
+        if (!drives(signal).is_dead && !must_move(one.inputs(), signal, by)) continue;
         if (!holds(Rule::dead_columns)) return;
         const bool current = signal == Signal::current_A;
-        here.push_back({FindingKind::constant_column,
-                        Severity::warning,
-                        one.recording().name,
+        here.push_back({FindingKind::constant_column, Severity::warning, one.recording().name,
                         to_string(signal),
                         "never changes, where " + by.name + " goes through " + short_number(by.range) +
                             (current ? ": a sensor that nobody reads"
@@ -126,8 +125,7 @@ inline void leave_out_what_is_dead(const Model& model, CheckedRecordings& checke
                         current ? "look at what reads the sensor, or leave the column out"
                                 : "drive it hard enough to move, look at what reads the sensor, or leave the "
                                   "column out",
-                        as_recorded ? FindingAction::none : FindingAction::masked,
-                        {}});
+                        as_recorded ? FindingAction::none : FindingAction::masked});
       }
       for (const Finding& finding : here) {
         if (!as_recorded)

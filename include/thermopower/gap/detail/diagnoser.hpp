@@ -122,10 +122,7 @@ private:
       held_out_inputs_.push_back(std::move(one).take_inputs());
     }
     support_curves(catalogue_, model_, train_inputs_);
-    std::vector<const Inputs*> all;
-    for (const auto* part : {&train_inputs_, &held_out_inputs_})
-      for (const Inputs& one : *part) all.push_back(&one);
-    result_.not_judged = not_judged_in(all);
+    result_.not_judged = not_judged_in({&train_inputs_, &held_out_inputs_});
     result_.augmented = result_.recalibrated = model_;
   }
 

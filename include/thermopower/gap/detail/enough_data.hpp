@@ -15,19 +15,18 @@
 
 namespace thermopower::gap::engine {
 
-/// The least data that anything is said of. Whoever asks for less is told what to record, and not what fits a handful of rows. A
-/// cause wants more (DecisionThresholds::least_readings): a table of some ten readings by hand can tell that there is a gap.
-/// Held by tests/gap/data/enough_data_test.cpp.
+/// The least data that anything is said of. Whoever asks for less is told what to record, and not what fits a
+/// handful of rows. A cause wants more (DecisionThresholds::least_readings): a table of some ten readings by hand
+/// can tell that there is a gap. Held by tests/gap/data/enough_data_test.cpp.
 struct LeastData {
   /// Rows of a run. A simulation starts on the first one, which then tells nothing of it; in a run of two there is one
   /// difference, and an effect that only acts on starts (a lag, a second mass) explains them all.
   Eigen::Index run_rows = 3;
-  Eigen::Index train = 12;     ///< readings of some signal to fit to
-  Eigen::Index held_out = 12;  ///< readings of some signal to judge on
+  Eigen::Index readings = 12;  ///< of some signal, to fit to and to judge on
   double windows = 2.0;        ///< of an axis, in time: one alone has no other to agree with
 };
 
-/// What of a signal a simulation can be held against in a part of the data.
+/// How much of a signal a simulation can be held against in a part of the data.
 struct ReadingCount {
   Eigen::Index told = 0;      ///< in runs that are long enough, but for the first one of each
   Eigen::Index recorded = 0;  ///< all of them
@@ -56,19 +55,17 @@ inline ReadingCount readings_of(const std::vector<Inputs>& part, Signal signal) 
 /// A part of the data in words, such as "the held-out rows of a.csv".
 inline std::string part_in_words(const std::vector<Inputs>& part, bool held_out) {
   constexpr std::size_t most = 3;
-  std::string names;
-  for (std::size_t i = 0; i < part.size() && i < most; ++i) names += (i == 0 ? "" : ", ") + part[i].name;
-  if (part.size() > most) names += " and " + std::to_string(part.size() - most) + " more";
-  return std::string(held_out ? "the held-out rows" : "the training rows") +
-         (names.empty() ? "" : " of " + names);
+  std::vector<std::string> names;
+  for (const Inputs& one : part) names.push_back(one.name);
+  const std::string words = listed(names, most);
+  return (held_out ? "the held-out rows" : "the training rows") + (words.empty() ? "" : " of " + words);
 }
 
-/// What is lacking in a part of the data; empty where there is enough. `mend` receives what to do about it.
+/// The data that are lacking in a part of the data; empty where there is enough. `mend` receives what to do about it.
 /// @param horizon_s  over which simulations of an axis are judged
 inline std::string lacking(const Model& model, const std::vector<Inputs>& part, bool held_out,
                            double horizon_s, std::string& mend) {
   constexpr LeastData least;
-  const Eigen::Index floor = held_out ? least.held_out : least.train;
   // Whoever asks for longer windows than usual wants to see an axis run freely for long, once if need be.
   const double lasts_s = least.windows * std::min(horizon_s, Options().horizon_s);
   ReadingCount most;
@@ -80,7 +77,7 @@ inline std::string lacking(const Model& model, const std::vector<Inputs>& part, 
     if (here.recorded == 0) continue;
     const bool moves = !model.own && (signal == Signal::angle_deg || signal == Signal::rate_dps);
     const bool lasts = !moves || here.lasts_s >= lasts_s;
-    if (here.told >= floor && lasts) return {};
+    if (here.told >= least.readings && lasts) return {};
     if (!name.empty() && here.told <= most.told) continue;
     most = here;
     name = model.own ? model.own->equations->info()->signals[static_cast<std::size_t>(i)].name
@@ -89,35 +86,35 @@ inline std::string lacking(const Model& model, const std::vector<Inputs>& part, 
   }
   const std::string words = part_in_words(part, held_out);
   if (name.empty()) {
-    std::vector<const Inputs*> all;
-    for (const Inputs& one : part) all.push_back(&one);
     std::string why;
-    for (const std::string& one : not_judged_in(all)) why += (why.empty() ? ": " : "; ") + one;
+    for (const std::string& one : not_judged_in({&part})) why += (why.empty() ? ": " : "; ") + one;
     mend =
         "record what is missing, or say which columns it is in: 'thermopower-gap columns FILE' proposes options --column "
         "NAME=HEADER:UNIT";
     return "no signal of the model can be judged in " + words + why;
   }
-  if (most.told >= floor && !is_long_enough) {
+  if (most.told >= least.readings && !is_long_enough) {
     mend = "record for several seconds, in which the axis turns back more than once";
     return "too little data: " + words + " last " + short_number(most.lasts_s) +
            " s, less than two windows of " + short_number(lasts_s / least.windows) + " s";
   }
-  const bool is_short = most.recorded >= floor && 2 * most.told < most.recorded;
-  mend = is_short ? "give what was recorded in one go one label in the column run: runs of at least " +
-                        std::to_string(least.run_rows) + " rows, better of hundreds"
-                  : "record for longer: at least " + std::to_string(least.train) + " rows to train on and " +
-                        std::to_string(least.held_out) + " held out, better ten times as many";
+  const bool is_short = most.recorded >= least.readings && 2 * most.told < most.recorded;
+  mend = is_short
+             ? "give what was recorded in one go one label in the column run: runs of at least " +
+                   std::to_string(least.run_rows) + " rows, better of hundreds"
+             : "record for longer: at least " + std::to_string(least.readings) + " rows to train on and " +
+                   std::to_string(least.readings) + " held out, better ten times as many";
   return "too little data: " + words + " hold " + std::to_string(most.told) +
          (most.told == 1 ? " reading" : " readings") + " of " + plant::the_variable(name) +
-         " that a simulation can be held against, fewer than " + std::to_string(floor) +
+         " that a simulation can be held against, fewer than " + std::to_string(least.readings) +
          (is_short ? ": a run's first row only starts one, and runs of fewer than " +
                          std::to_string(least.run_rows) + " rows tell little else"
                    : "");
 }
 
-/// Whether there is enough to diagnose: data that can be believed, enough readings of some signal in either part (LeastData), and
-/// a row that a simulation can start from. Else says in `result` what is lacking, and what would mend it.
+/// Whether there is enough to diagnose: data that can be believed, enough readings of some signal in either part
+/// (LeastData), and a row that a simulation can start from. Else says in `result` what is lacking, and what would
+/// mend it.
 /// @param horizon_s  over which simulations are judged
 inline bool enough_data(Diagnosis& result, const Model& model, const std::vector<Inputs>& train,
                         const std::vector<Inputs>& held_out, double horizon_s) {

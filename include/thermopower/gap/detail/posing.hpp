@@ -17,7 +17,8 @@
 
 namespace thermopower::gap::engine {
 
-/// Puts recordings to a model: thinned to what its dynamics need, in windows, few enough of them to fit many explanations.
+/// Puts recordings to a model: thinned to what its dynamics need, in windows, few enough of them to fit many
+/// explanations.
 class Posing {
 public:
   /// How much of the data, in which windows.
@@ -44,7 +45,7 @@ public:
     return {window_s, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, 1};
   }
 
-  /// What is fitted to. It keeps the thinned data.
+  /// The problem that is fitted. It keeps the thinned data.
   FitProblem pose(const std::vector<Inputs>& inputs, const Extent& extent) const {
     auto thin = std::make_shared<std::vector<Inputs>>();
     for (const Inputs& one : inputs) {

@@ -4,7 +4,6 @@
 
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/inputs.hpp>
-#include <thermopower/gap/data/jackknife.hpp>
 #include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <thermopower/gap/observe/bent_command.hpp>
-#include <thermopower/gap/data/jackknife.hpp>
 #include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>

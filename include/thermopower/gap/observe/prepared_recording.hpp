@@ -4,7 +4,6 @@
 
 #include <thermopower/gap/data/clock.hpp>
 #include <thermopower/gap/observe/command_between_rows.hpp>
-#include <thermopower/gap/data/current_masks.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/frame_masks.hpp>
 #include <thermopower/gap/observe/lagging_output.hpp>
@@ -19,6 +18,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -164,15 +164,11 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   moves_ = model.has_axis();
   // A row that is lost stops no clock: it is read before the runs are cut there.
   read_the_clock(list);
-  RowMask starts(unknown_.size(), 0);
-  check_stamps(model, list, believed_.runs, starts);
-  starts = by(Rule::pauses, std::move(starts));
-  believed_.runs = cut_at(believed_.runs, starts, true);
+  believed_.runs = cut_at(believed_.runs, by(Rule::pauses, check_stamps(model, list, believed_.runs)), true);
   if (moves_ && believed_.has("angle_deg")) {
-    RowMask elsewhere(unknown_.size(), 0);
-    check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.find("rate_dps"),
-                 believed_.runs, elsewhere);
-    believed_.runs = cut_at(believed_.runs, by(Rule::resets, std::move(elsewhere)), false);
+    const Eigen::VectorXd angle = unwrapped(believed_.column("angle_deg"), believed_.runs);
+    const RowMask elsewhere = check_resets(list, angle, believed_.find("rate_dps"), believed_.runs);
+    believed_.runs = cut_at(believed_.runs, by(Rule::resets, elsewhere), false);
   }
   electrical_ = model.has_current() && recorded.has("power_param");
   drives_by_current_ = !recorded.has("power_param") && !recorded.has(heater_power_column) &&
@@ -372,7 +368,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
                   "look at what reads the sensor");
     if (name == "current_A" && drives_by_current_) {
       untold_current_ = clipped;
-      for (std::size_t i = 0; i < frozen.size(); ++i) untold_current_[i] |= frozen[i];
+      add_to(untold_current_, frozen);
     }
     if (still.equal_share() > 0.999999 && present > 20)
       list.add(FindingKind::constant_column, Severity::note, name, "never changes");
@@ -391,10 +387,9 @@ inline void PreparedRecording::mask_slow_input(const std::string& name, Eigen::V
   traits.cannot_jump = name != "supply_V";  // a supply gives way to the load
   SampleMasks masks(values, believed_.runs, traits);
   RowMask mask = masks.spikes();
-  const RowMask bursts = masks.bursts();
+  add_to(mask, masks.bursts());
   const Eigen::VectorXd* power = name == "supply_V" ? believed_.find("power_param") : nullptr;
   for (std::size_t i = 0; i < mask.size(); ++i) {
-    mask[i] = mask[i] != 0 || bursts[i] != 0 ? 1 : 0;
     if (mask[i] == 0 || power == nullptr) continue;
     const auto row = static_cast<Eigen::Index>(i);  // a step of the load may show for a row
     if ((row > 0 && (*power)[row] != (*power)[row - 1]) ||
@@ -419,7 +414,7 @@ inline double PreparedRecording::stands_between_samples(const Recording& recorde
 }
 
 inline void PreparedRecording::fill_inputs(const Model& model, const Recording& recorded, FindingList& list) {
-  std::vector<InputColumn> inputs = input_columns();
+  std::vector<InputColumn> inputs(std::begin(input_columns), std::end(input_columns));
   if (drives_by_current_) inputs.push_back({"current_A", InputPace::slow});
   for (const InputColumn& input : inputs) {
     Column* found = nullptr;
@@ -436,11 +431,11 @@ inline void PreparedRecording::fill_inputs(const Model& model, const Recording& 
       believed_.remove(input.name);  // a run without a sample
       continue;
     }
-    for (std::size_t i = 0; i < mask.size(); ++i) unknown_[i] = unknown_[i] != 0 || mask[i] != 0 ? 1 : 0;
+    add_to(unknown_, mask);
     list.add_rows(FindingKind::unknown_input, Severity::note, input.name, mask, FindingAction::segmented,
                   "are missing between values that differ; their rows are not judged",
                   "log the inputs at every row");
-    if (holes > 0 && FindingList::ranges_of(mask).empty())
+    if (holes > 0 && ranges_of(mask).empty())
       list.add(FindingKind::missing_samples, Severity::note, input.name,
                std::to_string(holes) + " samples are missing between values that tell what they were");
   }
