@@ -148,7 +148,7 @@ private:
 
   static double price_of_temperatures(const UnitEvidence& of, const UnitHypothesis& one) {
     constexpr UnitThresholds limit;
-    constexpr PossibleTemperature place;
+    using Place = PossibleTemperature;
     constexpr double hottest_air_C = 70.0, below_air_K = 15.0, most_range_K = 150.0;
     const double air_C = one.celsius("ambient_C", of.air.typical);
     double sum = 0.0;
@@ -162,7 +162,7 @@ private:
       }
       const double low_C = one.celsius(scale->column, range.low),
                    high_C = one.celsius(scale->column, range.high);
-      bool possible = low_C > place.low_C && high_C < (is_air ? hottest_air_C : place.high_C);
+      bool possible = low_C > Place::low_C && high_C < (is_air ? hottest_air_C : Place::high_C);
       possible =
           possible && (scale->factor == 1.8 || range.is_odd());  // only degrees Fahrenheit look like Celsius
       possible = possible && (scale->factor < 10.0 || range.whole_numbers);
