@@ -7,6 +7,12 @@
 
 namespace thermopower::gap::engine {
 
+/// A number that recordings tell, and its standard error.
+struct Estimate {
+  double value = 0.0;  ///< in its unit
+  double error = 0.0;  ///< in the same unit
+};
+
 /// Standard error of a statistic by the delete-one-block jackknife (Efron & Tibshirani 1993, chapter 11).
 /// @param left_out  the statistic with one block of the data left out after another, in its unit
 /// @return in the same unit; 0 of fewer than two values, NaN where one of them is not finite

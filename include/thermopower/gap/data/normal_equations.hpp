@@ -73,18 +73,17 @@ private:
 
 /// All sums of some blocks, and what is made of them without one block after another: for jackknife_error().
 template <class Of>
-std::pair<NormalEquations, std::vector<double>> left_out(const std::vector<NormalEquations>& blocks,
-                                                         Of&& of) {
+auto left_out(const std::vector<NormalEquations>& blocks, Of&& of) {
   assert(!blocks.empty());
   NormalEquations all = blocks.front();
   for (std::size_t i = 1; i < blocks.size(); ++i) all.add(blocks[i], 1.0);
-  std::vector<double> without;
+  std::vector<decltype(of(all))> without;
   for (const NormalEquations& one : blocks) {
     NormalEquations rest = all;
     rest.add(one, -1.0);
     without.push_back(of(rest));
   }
-  return {std::move(all), std::move(without)};
+  return std::make_pair(std::move(all), std::move(without));
 }
 
 }  // namespace thermopower::gap::engine
