@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -11,6 +12,13 @@ namespace thermopower::gap::engine {
 struct Estimate {
   double value = 0.0;  ///< in its unit
   double error = 0.0;  ///< in the same unit
+};
+
+/// Thresholds of a regression whose error a jackknife tells.
+/// Held by tests/gap/observe/command_test.cpp and tests/gap/observe/lagging_output_test.cpp.
+struct JackknifeThresholds {
+  std::size_t least_rows = 300;  ///< of a regression: fewer do not tell
+  std::size_t blocks = 20;       ///< of the rows
 };
 
 /// Standard error of a statistic by the delete-one-block jackknife (Efron & Tibshirani 1993, chapter 11).

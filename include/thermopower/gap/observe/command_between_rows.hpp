@@ -16,10 +16,9 @@
 #include <vector>
 
 /// @file command_between_rows.hpp
-/// What a command did between the rows, and how much of it is noise. A row's command holds until the next one: so says the
-/// format, and so it is where the loop that commands also logs. Where a log keeps each twentieth command of a faster loop,
-/// holding it is half a row late, and half a row late looks like compliance or a slow drive. Where a log keeps the current
-/// that a sensor measured, its noise is no torque. The motion tells which.
+/// The command of an axis between the rows, and its noise, as the motion shows them. By the format, a row's command holds until
+/// the next row. A log may keep each twentieth command of a faster loop. To hold it is then half a row late, which looks like
+/// compliance or a slow drive. A log may keep the current that a sensor measured. Its noise is not a torque.
 
 namespace thermopower::gap::engine {
 
@@ -28,7 +27,7 @@ namespace thermopower::gap::engine {
 struct CommandThresholds {
   double least_share = 0.2;  ///< every second command logged is felt by a quarter
   double most_share = 0.65;  ///< a command that changes steadily by half; more is another thing
-  double sure = 5.0;         ///< standard errors that a share differs from 0 by
+  double sure = 5.0;         ///< standard errors that a share differs from 0 by: one in 25 000, of 20 parts
   double precise = 0.08;     ///< largest standard error of the share
   double agree = 2.0;        ///< standard errors that two shares may differ by
   double matters = 0.2;      ///< noise scales of what half a row changes: less is nobody's concern

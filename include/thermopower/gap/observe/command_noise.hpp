@@ -14,7 +14,7 @@
 #include <vector>
 
 /// @file command_noise.hpp
-/// What of a command is noise. A log often keeps the current that a sensor measured, not the one that was asked for: its
+/// The noise of a command. A log often keeps the current that a sensor measured, not the one that was asked for. Its
 /// noise turns nothing, and a simulation that is driven by it wanders.
 
 namespace thermopower::gap::engine {
@@ -46,7 +46,7 @@ struct CommandNoiseThresholds {
 /// follows less, too, but with another phase and whatever the spectrum.
 class CommandNoise {
 public:
-  /// What turns the axis beside its command is taken off the acceleration first: a stiff gear or a heavy arm that moves slowly
+  /// All that turns the axis beside its command is taken off the acceleration first: a stiff gear or a heavy arm that moves slowly
   /// balances nearly all of the command, and its acceleration alone follows none of it.
   /// @param fit  of that motion on the mean and the slope of its command around each row
   CommandNoise(const MotionRegression& motion, const MotionFit& fit)

@@ -132,7 +132,7 @@ inline bool is_part_of(const PreparedRecording& part, const PreparedRecording& w
   return false;
 }
 
-/// What is wrong with the experiment as a whole.
+/// Faults of the experiment as a whole.
 /// @param horizon_s  length of the axis' windows in s
 inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording>& train,
                                              const std::vector<PreparedRecording>& held_out,

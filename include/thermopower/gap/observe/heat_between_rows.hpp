@@ -6,7 +6,7 @@
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/jackknife.hpp>
 #include <thermopower/gap/data/normal_equations.hpp>
-#include <thermopower/gap/data/robust.hpp>
+#include <thermopower/gap/observe/command_between_rows.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 #include <thermopower/plant/samples.hpp>
 
@@ -32,14 +32,12 @@ namespace thermopower::gap::engine {
 /// Held by tests/gap/observe/heat_test.cpp.
 struct HeatThresholds {
   Eigen::Index block_rows = 17;  ///< through which a body goes as the terms say, but for a straight line
-  std::size_t parts = 20;        ///< of the blocks, for the jackknife
   std::size_t least_blocks = 6;  ///< in which the heat changes
   double least_share = 0.25;     ///< switched at any time is a half
   double most_share = 1.25;      ///< of the interval that is over is one
   double whole = 0.8;            ///< from here on it is the interval that is over
-  double sure = 5.0;      ///< standard errors that the share differs from 0 by: one in 25 000, of 20 parts
-  double agree = 2.5;     ///< standard errors that few and all bodies, and recordings, may differ by
-  double precise = 0.12;  ///< largest standard error of the share
+  double agree = 2.5;            ///< standard errors that few and all bodies, and recordings, may differ by
+  double precise = 0.12;         ///< largest standard error of the share
 };
 
 /// Asks temperatures when the heat changed.
@@ -71,7 +69,8 @@ public:
   std::optional<double> share() const {
     constexpr HeatThresholds limit;
     const Estimate best = told();
-    if (!(best.error < limit.precise) || !(best.value > limit.sure * best.error)) return std::nullopt;
+    if (!(best.error < limit.precise) || !(best.value > CommandThresholds().sure * best.error))
+      return std::nullopt;
     if (!(best.value > limit.least_share) || !(best.value < limit.most_share)) return std::nullopt;
     return best.value > limit.whole ? 1.0 : best.value;
   }
@@ -107,7 +106,7 @@ private:
     constexpr HeatThresholds limit;
     const Estimate none{plant::missing, 1e9};
     if (blocks_.size() < limit.least_blocks) return none;
-    const std::size_t parts = std::min(limit.parts, blocks_.size());
+    const std::size_t parts = std::min(JackknifeThresholds().blocks, blocks_.size());
     std::vector<NormalEquations> sums(parts, NormalEquations(terms));
     for (std::size_t i = 0; i < blocks_.size(); ++i) sums[i * parts / blocks_.size()].add(blocks_[i], 1.0);
     const auto [all, without] =
@@ -116,7 +115,7 @@ private:
     return std::isfinite(error) ? Estimate{share_of(all, used), error} : none;
   }
 
-  /// What the heat of a run did until each of its rows, in J: a row of terms for each.
+  /// The terms of each row of a run: the effect of its heat until there, in J.
   static Eigen::MatrixXd heat_until(const Inputs& inputs, const Eigen::VectorXd& heat_W, const RunSpan& run,
                                     double usual_s) {
     constexpr std::array<double, bodies> hold{30.0, 6.0, 1.5};  // intervals
@@ -205,7 +204,7 @@ inline std::string heat_column(const Inputs& inputs) {
   return inputs.heat == HeatSource::drive ? "drive_A" : "current_A";
 }
 
-/// What is said of a recording whose power was not held until the next row. @param share  as HeatBetweenRows::share()
+/// The finding about a recording whose power was not held until the next row. @param share  as HeatBetweenRows::share()
 inline Finding switched_between_rows(const std::string& recording, const Inputs& inputs, double share) {
   const bool late = share == 1.0;
   return {FindingKind::sampled_command,

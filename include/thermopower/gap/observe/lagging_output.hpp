@@ -25,11 +25,9 @@ namespace thermopower::gap::engine {
 /// Thresholds of the question whether rate and angle belong together.
 /// Held by tests/gap/observe/lagging_output_test.cpp.
 struct LagThresholds {
-  std::size_t least_rows = 300;  ///< fewer do not tell
-  std::size_t blocks = 20;       ///< of the jackknife
-  double sure = 8.0;             ///< standard errors that a lag differs from 0 by
-  double matters = 0.5;          ///< noise scales of the rate that the lag makes: less is nobody's concern
-  double precise = 0.1;          ///< largest standard error of a lag, of the lag
+  double sure = 8.0;     ///< standard errors that a lag differs from 0 by
+  double matters = 0.5;  ///< noise scales of the rate that the lag makes: less is nobody's concern
+  double precise = 0.1;  ///< largest standard error of a lag, of the lag
   double within_a_row =
       0.5;  ///< intervals between rows up to which a late reading is as good as one a little earlier
 };
@@ -78,7 +76,7 @@ public:
       }
   }
 
-  /// What rate and angle differ by.
+  /// The difference between rate and angle.
   struct Found {
     std::optional<double>
         lag_s;  ///< that the rate comes behind the angle, negative where the angle does; nothing where
@@ -88,13 +86,14 @@ public:
   /// Asks the recordings.
   Found found() const {
     constexpr LagThresholds limit;
-    if (rows_.size() < limit.least_rows) return {};
-    std::vector<NormalEquations> blocks(limit.blocks, NormalEquations(terms));
+    if (rows_.size() < JackknifeThresholds().least_rows) return {};
+    constexpr std::size_t parts = JackknifeThresholds().blocks;
+    std::vector<NormalEquations> blocks(parts, NormalEquations(terms));
     double squares = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       Vector regressors = rows_[i].others;
       regressors[0] = rows_[i].steeper;
-      blocks[i * limit.blocks / rows_.size()].add(rows_[i].others, regressors, rows_[i].more_dps);
+      blocks[i * parts / rows_.size()].add(rows_[i].others, regressors, rows_[i].more_dps);
       squares += rows_[i].others[0] * rows_[i].others[0] / static_cast<double>(rows_.size());
     }
     const auto [all, without] = left_out(blocks, [](const NormalEquations& sums) { return sums.solve()[0]; });

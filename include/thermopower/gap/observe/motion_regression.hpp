@@ -20,7 +20,7 @@
 #include <vector>
 
 /// @file motion_regression.hpp
-/// What of a command the motion follows, before any model: the acceleration between rows, regressed on terms of the command
+/// How the motion follows a command, before any model: the acceleration between rows, regressed on terms of the command
 /// and on what else turns most axes.
 
 namespace thermopower::gap::engine {
@@ -50,7 +50,7 @@ struct MeasuredMotion {
   }
 };
 
-/// What a drive may give beside a torque in proportion to its command: less of a small one, as a dead band does, less of a large
+/// The torque that a drive may give beside one in proportion to its command: less of a small one, as a dead band does, less of a large
 /// one, as saturation does, and less of one that its gears rub. In a loop the command falls as it is followed, and what a small one gives
 /// less of passes for a part of the next one without these.
 class BentCommand {
@@ -69,7 +69,7 @@ public:
   double small(double command) const { return part_of_small(command) - small_part_ * command; }
   /// Grows most in the largest; without the same.
   double large(double command) const { return part_of_large(command) - large_part_ * command; }
-  /// What gears rub of it, against the motion. @param rate  its sign counts
+  /// The part that gears rub off, against the motion. @param rate  its sign counts
   static double rubbed(double command, double rate) { return std::copysign(command, rate); }
 
 private:
@@ -94,9 +94,7 @@ private:
 /// Thresholds of a regression of the motion on its command.
 /// Held by tests/gap/observe/command_test.cpp and tests/gap/observe/lagging_output_test.cpp.
 struct MotionThresholds {
-  std::size_t least_rows = 300;   ///< that move: fewer do not tell
-  std::size_t most_rows = 30000;  ///< that are looked at
-  Eigen::Index blocks = 20;       ///< of the jackknife
+  std::size_t most_rows = 30000;  ///< that move and are looked at
   double moving = 0.05;           ///< of the rate's 95th percentile: slower rows may be stuck
   int periods = 2;                ///< of the angle that are taken away
   int most_cogs = 60;             ///< a turn
@@ -125,7 +123,7 @@ struct MotionFit {
     return {dps, std::abs(dps), dps > 0.0 ? 1.0 : -1.0, rad, once.sine, once.cosine, 1.0};
   }
 
-  /// What turns the axis beside its command, deg/s^2. @param dps  the rate @param rad  the angle
+  /// The acceleration beside that by the command, deg/s^2. @param dps  the rate @param rad  the angle
   double beside(double dps, double rad) const {
     Eigen::VectorXd terms(beside_value.size());
     Eigen::Index at = 7;
@@ -156,12 +154,12 @@ public:
     const Eigen::VectorXd* command;  ///< one for each row
   };
 
-  /// Adds a recording of an axis that is driven by `command`; of what is none nothing. Keeps references to both: they must outlive this object.
+  /// Adds a recording of an axis that is driven by `command`, and nothing else. Both must outlive this object.
   void add(const Inputs& inputs, const Eigen::VectorXd& command) {
     if (command.size() > 0 && inputs.axis()) recordings_.push_back({&inputs, &command});
   }
 
-  /// What was added.
+  /// All that were added.
   const std::vector<Driven>& recordings() const { return recordings_; }
 
   /// Noise scale of a signal in the worst recording; 0 where none is judged.
@@ -190,15 +188,14 @@ public:
   /// @param together  rows whose mean, under a bell, is a sample of the regression. The regression is linear, so that means obey it, too,
   ///                  but differences of positions from row to row are mostly their noise, and its means hardly any
   std::optional<MotionFit> fit(const TermsOf& terms_of, std::size_t together = 1) const {
-    constexpr MotionThresholds limit;
+    constexpr auto parts = static_cast<Eigen::Index>(JackknifeThresholds().blocks);
     const std::vector<Row> rows = moving_rows(terms_of, together);
-    if (rows.size() < limit.least_rows) return std::nullopt;
+    if (rows.size() < JackknifeThresholds().least_rows) return std::nullopt;
     const Regressors regressors(rows);
     const Eigen::Index count = regressors.terms.rows(), terms = rows.front().size() - first_term;
     std::vector<NormalEquations> blocks;
-    for (Eigen::Index k = 0; k < limit.blocks; ++k) {
-      const Eigen::Index begin = (count * k + limit.blocks - 1) / limit.blocks,
-                         end = (count * (k + 1) + limit.blocks - 1) / limit.blocks;
+    for (Eigen::Index k = 0; k < parts; ++k) {
+      const Eigen::Index begin = (count * k + parts - 1) / parts, end = (count * (k + 1) + parts - 1) / parts;
       blocks.emplace_back(regressors.terms.middleRows(begin, end - begin),
                           regressors.responses.segment(begin, end - begin));
     }
@@ -295,7 +292,7 @@ private:
     }
   };
 
-  /// What each row with a motion turns by, deg/s, without its sign.
+  /// The speed of each row with a motion, deg/s.
   std::vector<double> speeds() const {
     std::vector<double> all;
     for (const Driven& one : recordings_)

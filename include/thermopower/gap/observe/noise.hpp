@@ -313,8 +313,8 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
     weights.push_back(1.0 / (limit.known_shape * limit.known_shape + 2.0 / independent));
   }
   if (lags.empty()) return {std::sqrt(mean_square), std::sqrt(mean_square)};
-  // What most third differences of what was measured are below bounds the noise, and what one of five of the error is below is
-  // noise wherever the error of a model is smooth.
+  // Twice the usual third difference of the measurement bounds the noise. The least fifth of those of the error are noise
+  // wherever the error of a model is smooth.
   std::vector<int> since_jump = since_gap;
   for (std::size_t i = 1; i < count && jumps; ++i)
     since_jump[i] = are_alike(levels, i, i - 1) ? std::min(since_gap[i], since_jump[i - 1] + 1) : 0;

@@ -29,7 +29,7 @@ namespace thermopower::gap::engine {
 /// A recording as every stage of a diagnosis uses it: validated and checked once, when it is made.
 ///
 /// Samples that are not to be believed are missing; inputs have no holes; where time passed unrecorded or an input
-/// was not known the run is cut, and the rows in between are left out. What was done stands in `findings`.
+/// was not known the run is cut, and the rows in between are left out. `findings` says so.
 class PreparedRecording {
 public:
   /// @param model       says which columns are inputs, and which outputs are judged
@@ -38,7 +38,7 @@ public:
   /// @throws InvalidInput where the recording is invalid (Recording::validate())
   PreparedRecording(const Model& model, const Recording& recorded, bool as_recorded = false);
 
-  /// What is believed: all rows lie in a run.
+  /// The believed samples; all rows lie in a run.
   const Recording& recording() const { return believed_; }
   /// The same as the rollouts of the model take it.
   const Inputs& inputs() const { return inputs_; }
@@ -46,7 +46,7 @@ public:
   Recording take_recording() && { return std::move(believed_); }
   /// Gives away inputs().
   Inputs take_inputs() && { return std::move(inputs_); }
-  /// What was found, in a fixed order: stamps, then column by column.
+  /// All findings, in a fixed order: stamps, then column by column.
   const std::vector<Finding>& findings() const { return findings_; }
   /// For each row of recording() its row in the whole recording as it was given.
   const std::vector<Eigen::Index>& source_rows() const { return source_rows_; }

@@ -19,9 +19,9 @@
 #include <vector>
 
 /// @file target_between_rows.hpp
-/// What a servo's target did between the rows. Nobody recorded the servo's command: it is made of the target and of the motion
-/// that was measured, and where that turns within a few rows, slopes from row to row are not its rate at the rows. What the
-/// command is off by goes as its steps do and looks like part of the next target, though every target held. The simulation
+/// A servo's target between the rows. Nobody recorded the servo's command: it is made of the target and of the motion
+/// that was measured, and where that turns within a few rows, slopes from row to row are not its rate at the rows. The
+/// command's error goes as its steps do and looks like part of the next target, though every target held. The simulation
 /// under test says how much of that there is: with targets that hold, and with targets that move, its motion is looked at
 /// through the same rows, and the recorded one is placed between the two.
 
@@ -59,7 +59,7 @@ public:
     const std::optional<Estimate> plain = placed(*seen, false);
     const auto steady = plain ? steady_share(sure_of(*plain), least) : std::nullopt;
     if (!steady) return std::nullopt;
-    // What the drive takes of its command falls with that as the target is followed, and passes for a part of the next step.
+    // The part of its command that a drive takes falls with that as the target is followed, and passes for a part of the next step.
     const std::optional<Seen> seen_beside = seen_in(recordings_, true);
     const std::optional<Estimate> beside = seen_beside ? placed(*seen_beside, true) : std::nullopt;
     const bool was_that = beside && beside->value < least &&
@@ -68,7 +68,7 @@ public:
   }
 
 private:
-  /// What a regression of the motion on the servo's command and on what it makes of the target's next step sees.
+  /// Result of a regression of the motion on the servo's command and on the command that the target's next step makes.
   struct Seen {
     double response = 0.0;  ///< of the axis to the command, deg/s^2 for each A
     Estimate share;         ///< of the next step
@@ -79,8 +79,7 @@ private:
   /// @param bent  whether it was seen beside what the drive may bend its command by
   std::optional<Estimate> placed(const Seen& seen, bool bent) const {
     constexpr TargetThresholds limit;
-    // What slopes are off by goes with the loop's gain, and constants are known roughly: what a regression tells of them is
-    // torque by inertia.
+    // The error of slopes goes with the loop's gain, and constants are known roughly. The regression tells torque by inertia.
     Model like = model_;
     std::optional<Seen> holding = seen_in_simulation(like, 0.0, bent);
     for (int round = 0; holding && round < limit.adjustments; ++round) {

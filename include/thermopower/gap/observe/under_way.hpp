@@ -82,7 +82,7 @@ inline bool was_driven_before(const Eigen::VectorXd& rate, const Eigen::VectorXd
 }
 
 /// Marks the runs of an axis that begin under way (RunSpan::goes_on): the log was cut out of a longer one, and the axis moves
-/// already. What drove it before, and how far a spring is bent, nobody knows then. And those that begin at rest under a command
+/// already. Nobody knows then what drove it before, and how far a spring is bent. And those that begin at rest under a command
 /// that was there before (RunSpan::was_driven).
 inline void mark_under_way(Recording& recording) {
   const Eigen::VectorXd* rate = recording.find("rate_dps");
@@ -158,7 +158,7 @@ private:
   /// then ever more together.
   static constexpr std::array<Eigen::Index, lags + 1> older = {-1, 0, 1, 2, 3, 4, 5, 6, 7, 9, 12, 16, 21, 27};
 
-  /// What of a command acts between a row and the next. @param before  the command before the run's first row
+  /// The commands that act between a row and the next. @param before  the command before the run's first row
   static Eigen::VectorXd terms_at(const Eigen::VectorXd& command, const RunSpan& run, Eigen::Index row,
                                   double before) {
     Eigen::VectorXd terms = Eigen::VectorXd::Zero(lags);
@@ -192,7 +192,7 @@ private:
     double brake_dps2;  ///< of dry friction, where the axis is so slow that this may hold it; else 0
     Eigen::VectorXd idle, driven;  ///< the terms of either answer
 
-    /// What the command turns it by: dry friction holds what rests against no more than itself.
+    /// Its acceleration by the command: dry friction holds what rests against no more than itself.
     double turned(const Eigen::VectorXd& response, const Eigen::VectorXd& terms) const {
       const double by = response.dot(terms);
       return std::copysign(std::max(0.0, std::abs(by) - brake_dps2), by);

@@ -119,7 +119,7 @@ private:
                                : cools ? UnitMeasure::heating
                                        : UnitMeasure::current;
       const double factor = cools ? limit.near_heat : limit.near_motion;
-      // What warms with the heat is neither air nor a supply.
+      // A column that warms with the heat is neither air nor a supply.
       if (first == nullptr || second == nullptr || evidence.is_near(told, factor) ||
           (pair.first == "motor_C" && evidence[UnitMeasure::heating].is_told()))
         continue;

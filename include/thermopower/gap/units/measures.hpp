@@ -40,7 +40,7 @@ enum class UnitMeasure {
 /// How many there are.
 inline constexpr std::size_t unit_measure_count = 9;
 
-/// What a recording says of a measure.
+/// A measure as a recording tells it.
 struct Measured {
   double value = missing;      ///< measured by expected, without its sign; NaN: not told
   double sd = 0.1;             ///< standard deviation of its logarithm
@@ -234,7 +234,6 @@ private:
 
   /// Acceleration, rate, direction, a constant, the angle with its sine and cosine, a torque from outside; the effort.
   WindowColumns effort_columns(Eigen::Index length, Eigen::Index late) const {
-    constexpr UnitThresholds limit;
     constexpr Eigen::Index part_of_bell = 8;
     constexpr double over_noise = 3.0, fast = 0.95;
     const Eigen::Index n = inputs_.rows(), around = std::max<Eigen::Index>(1, length / part_of_bell);
@@ -251,7 +250,7 @@ private:
         by_rate ? white_scale(inputs_.of(Signal::rate_dps), inputs_.runs)
                 : white_scale(inputs_.of(Signal::angle_deg), inputs_.runs) /
                       (plant::median_interval_s(inputs_.t_s, inputs_.runs) * static_cast<double>(around));
-    const double slow = std::max(limit.moving * quantile_of(speeds, fast), over_noise * noise);
+    const double slow = std::max(MotionThresholds().moving * quantile_of(speeds, fast), over_noise * noise);
     WindowColumns all{Eigen::MatrixXd::Ones(n, 5 + (has_angle ? 3 : 0) + (has_torque ? 1 : 0)), !by_rate};
     all.columns.col(0) = interval_slopes(inputs_.t_s, by_rate ? rate_ : angle_);
     all.columns.col(1) = rate;

@@ -31,7 +31,7 @@ public:
 
   /// One hypothesis for each part.
   typedef std::vector<const UnitHypothesis*> Assignment;
-  /// What all parts share: the logarithms by which measures are off, then in kelvin the air above a room, the coldest motor above
+  /// Shared by all parts: the logarithms by which measures are off, then in kelvin the air above a room, the coldest motor above
   /// its air, and the air that cools the motor above the recorded one.
   typedef std::array<double, unit_measure_count + 3> Shared;
 
@@ -49,14 +49,14 @@ public:
                           likeliest({drive, drag}, units).nats);
   }
 
-  /// What the recordings share, with the units given.
+  /// The likeliest values that the recordings share, with the units given.
   Shared shared_by(const Assignment& units) const {
     Shared all{};
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = likeliest({k}, units).at;
     return all;
   }
 
-  /// What a part says of a hypothesis where the shared constants are given.
+  /// Log posterior of a hypothesis in one part, where the shared constants are given.
   double of_part(std::size_t part, const UnitHypothesis& one, const Shared& shared,
                  const UnitHypothesis& common) const {
     double sum = own(part, one, common);
@@ -113,7 +113,7 @@ private:
     return limit.unit + (one.scales.size() > 1 ? limit.detail : 0.0);
   }
 
-  /// What only one part's numbers say: signs, temperatures, clocks.
+  /// Log likelihood of one part's own numbers: signs, temperatures, clocks.
   double own(std::size_t part, const UnitHypothesis& one, const UnitHypothesis& common) const {
     constexpr UnitThresholds limit;
     assert(part < parts_.size());

@@ -115,13 +115,13 @@ struct UnitHypothesis {
           (options.empty() ? "" : " ") + option(one.column, std::string(one.column) + ":" + one.option);
     return options;
   }
-  /// What it is a case of.
+  /// The kind of its finding.
   FindingKind kind() const {
     return exchanges()    ? FindingKind::swapped_columns
            : turns_sign() ? FindingKind::wrong_sign
                           : FindingKind::wrong_unit;
   }
-  /// What is wrong, after the column's name.
+  /// The fault, after the column's name.
   std::string words() const {
     if (exchanges()) return "and " + exchanged.second + " are exchanged";
     std::string text;
@@ -148,7 +148,7 @@ struct UnitHypothesis {
     return of(column) != nullptr ? of(column)->factor * celsius_C + of(column)->offset : celsius_C;
   }
 
-  /// What a measure of a recording should be, with its sign.
+  /// The value that a measure of a recording should have, with its sign.
   double expected(UnitMeasure measure, const UnitEvidence& evidence) const {
     const double rate = factor("rate_dps"), angle = factor("angle_deg"), time = factor("t_s"),
                  command = factor("drive_A") * factor("voltage_V"), current = factor("current_A"),

@@ -107,7 +107,7 @@ private:
   std::size_t windows_ = 0;
 };
 
-/// What is averaged: for each row the mean of terms and response over the interval after it; NaN: not known.
+/// The columns that are averaged: for each row the mean of terms and response over the interval after it; NaN: not known.
 struct WindowColumns {
   Eigen::MatrixXd columns;  ///< a row each; the response is the last column
   bool curved = false;      ///< the bell makes of the first term its derivative in time
