@@ -18,6 +18,14 @@ using namespace thermopower::gap::engine;
 
 namespace {
 
+/// Rows of a column moved to later rows by `shift` (to earlier ones where negative), ends repeated.
+Eigen::VectorXd shifted(const Eigen::VectorXd& values, Eigen::Index shift) {
+  Eigen::VectorXd result(values.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    result[i] = values[std::clamp<Eigen::Index>(i - shift, 0, values.size() - 1)];
+  return result;
+}
+
 Recording bench() { return test::bench_recording({}, 1200, 1); }
 Recording axis() { return test::axis_recording({}, 3000, 1); }
 
@@ -236,13 +244,13 @@ TEST_CASE("exchanged columns decide") {
 
 TEST_CASE("loggers whose clocks differ are told, but do not decide") {
   Recording r = bench();
-  r.set("current_A", engine::shifted(r.column("current_A"), 5));
+  r.set("current_A", shifted(r.column("current_A"), 5));
   CHECK_THAT(said(test::bench_model(), r),
              ContainsSubstring("clock_shift(current_A) follows power_param by 10 s (5 rows)"));
   CHECK(decision(test::bench_model(), r).empty());
   // In a loop the command follows the motion, and no clock is at fault.
   r = axis();
-  r.set("drive_A", engine::shifted(r.column("drive_A"), 4));
+  r.set("drive_A", shifted(r.column("drive_A"), 4));
   CHECK_THAT(said(test::axis_model(), r), !ContainsSubstring("clock_shift"));
 }
 

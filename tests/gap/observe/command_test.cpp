@@ -21,8 +21,9 @@ namespace {
 /// How much of the command's next step the motion shows.
 std::optional<double> share_of(const Recording& r) {
   const Inputs inputs = prepare(test::SampledAxis::model(), r);
-  CommandBetweenRows between;
-  between.add(inputs, inputs.drive_A);
+  MotionRegression motion;
+  motion.add(inputs, inputs.drive_A);
+  const CommandBetweenRows between(motion);
   const auto share = between.share();
   return share ? std::optional<double>(share->value) : std::nullopt;
 }
@@ -30,16 +31,18 @@ std::optional<double> share_of(const Recording& r) {
 /// Whether the command went on between the rows.
 bool went_on(const Recording& r) {
   const Inputs inputs = prepare(test::SampledAxis::model(), r);
-  CommandBetweenRows between;
-  between.add(inputs, inputs.drive_A);
+  MotionRegression motion;
+  motion.add(inputs, inputs.drive_A);
+  const CommandBetweenRows between(motion);
   return between.steady().has_value();
 }
 
 /// Standard deviation of what is noise in the command.
 double noise_of(const Recording& r) {
   const Inputs inputs = prepare(test::SampledAxis::model(), r);
-  CommandBetweenRows between;
-  between.add(inputs, inputs.drive_A);
+  MotionRegression motion;
+  motion.add(inputs, inputs.drive_A);
+  const CommandBetweenRows between(motion);
   return between.noise();
 }
 

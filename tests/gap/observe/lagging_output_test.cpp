@@ -22,7 +22,7 @@ namespace {
 std::optional<double> lag_of(const Recording& r) {
   RateLag lag;
   lag.add(prepare(test::SampledAxis::model(), r));
-  return lag.lag_s();
+  return lag.found().lag_s;
 }
 
 Recording sound(std::uint64_t seed) {

@@ -57,6 +57,19 @@ private:
   Eigen::VectorXd product_;  // of the terms and the response
 };
 
+/// A number that recordings tell, and its standard error.
+struct Estimate {
+  double value = 0.0;  ///< in its unit
+  double error = 0.0;  ///< in the same unit
+};
+
+/// Thresholds of a regression whose error a jackknife tells.
+/// Held by tests/gap/observe/command_test.cpp and tests/gap/observe/lagging_output_test.cpp.
+struct JackknifeThresholds {
+  std::size_t least_rows = 300;  ///< of a regression: fewer do not tell
+  std::size_t blocks = 20;       ///< of the rows
+};
+
 /// Standard error of a statistic by the delete-one-block jackknife (Efron & Tibshirani 1993, chapter 11).
 /// @param left_out  the statistic with one block of the data left out after another, in its unit
 /// @return in the same unit; 0 of fewer than two values, NaN where one of them is not finite
@@ -71,18 +84,17 @@ inline double jackknife_error(const std::vector<double>& left_out) {
 
 /// All sums of some blocks, and what is made of them without one block after another: for jackknife_error().
 template <class Of>
-std::pair<NormalEquations, std::vector<double>> left_out(const std::vector<NormalEquations>& blocks,
-                                                         Of&& of) {
+auto left_out(const std::vector<NormalEquations>& blocks, Of&& of) {
   assert(!blocks.empty());
   NormalEquations all = blocks.front();
   for (std::size_t i = 1; i < blocks.size(); ++i) all.add(blocks[i], 1.0);
-  std::vector<double> without;
+  std::vector<decltype(of(all))> without;
   for (const NormalEquations& one : blocks) {
     NormalEquations rest = all;
     rest.add(one, -1.0);
     without.push_back(of(rest));
   }
-  return {std::move(all), std::move(without)};
+  return std::make_pair(std::move(all), std::move(without));
 }
 
 }  // namespace thermopower::gap::engine

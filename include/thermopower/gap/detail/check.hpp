@@ -5,13 +5,13 @@
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/observe/command_between_rows.hpp>
 #include <thermopower/gap/observe/current_noise.hpp>
-#include <thermopower/gap/observe/driven_before.hpp>
 #include <thermopower/gap/observe/experiment.hpp>
 #include <thermopower/gap/observe/heater_duty.hpp>
 #include <thermopower/gap/observe/heat_between_rows.hpp>
 #include <thermopower/gap/observe/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/observe/target_between_rows.hpp>
+#include <thermopower/gap/observe/under_way.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/rule.hpp>
 #include <thermopower/gap/units/choose_units.hpp>
@@ -41,7 +41,7 @@ inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::
   if (!model.has_axis()) return;
   RateLag rate_lag;
   for (const PreparedRecording& one : checked.train) rate_lag.add(one.inputs());
-  const RateLag::Found found = rate_lag.lag_and_others();
+  const RateLag::Found found = rate_lag.found();
   if (!found.lag_s || !holds(Rule::lag)) return;
   const double lag_s = std::abs(*found.lag_s);
   const std::string late = *found.lag_s > 0.0 ? "rate_dps" : "angle_deg";
@@ -121,14 +121,20 @@ inline const Eigen::VectorXd& command_of(const Model& model, const PreparedRecor
   return plant::command(one.inputs(), model.axis->voltage_driven());
 }
 
-/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show
-/// which, by what the motion makes of earlier commands in the training recordings. Comes before what is said of the
-/// command between the rows.
+/// The motion of the axes in training whose command was logged. It refers to these recordings.
+inline MotionRegression commanded_motion(const Model& model, const CheckedRecordings& checked) {
+  MotionRegression motion;
+  for (const PreparedRecording& one : checked.train)
+    if (is_commanded(one)) motion.add(one.inputs(), command_of(model, one));
+  return motion;
+}
+
+/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show which, by
+/// what the motion makes of earlier commands in the training recordings. Comes before what is said of the command between the rows.
 inline void read_what_drove_before(const Model& model, CheckedRecordings& checked) {
   if (!model.has_axis()) return;
-  DrivenBefore before;
-  for (const PreparedRecording& one : checked.train)
-    if (is_commanded(one)) before.add(one.inputs(), command_of(model, one));
+  const MotionRegression motion = commanded_motion(model, checked);
+  const DrivenBefore before(motion);
   for (PreparedRecording* const one : checked.all()) {
     if (!is_commanded(*one)) continue;
     const std::vector<RunSpan>& runs = one->inputs().runs;
@@ -143,9 +149,8 @@ inline void read_what_drove_before(const Model& model, CheckedRecordings& checke
 inline void read_between_rows(const Model& model, CheckedRecordings& checked, double horizon_s,
                               std::vector<Finding>& findings) {
   if (!model.has_axis()) return;
-  CommandBetweenRows between(horizon_s);
-  for (const PreparedRecording& one : checked.train)
-    if (is_commanded(one)) between.add(one.inputs(), command_of(model, one));
+  const MotionRegression motion = commanded_motion(model, checked);
+  const CommandBetweenRows between(motion, horizon_s);
   const double noise = between.noise();
   const auto share = between.steady();
   if ((!share && !(noise > 0.0)) || !holds(Rule::command_between_rows)) return;
@@ -162,11 +167,10 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
            "log the command at the rate it is set, or the mean of it between the rows");
       const Eigen::VectorXd& command = command_of(model, *one);
       const std::vector<RunSpan> runs = one->recording().spans();
-      const Eigen::VectorXd steps = steps_of(command, runs);
       UnknownCommand unknown;
-      if (!(noise > 0.0)) unknown.between = unknown_between(command, steps, runs);
+      if (!(noise > 0.0)) unknown.between = unknown_between(command, runs);
       constexpr double sure = 2.0;  // standard errors: 95 %
-      unknown.shift = sure * share->error * steps;
+      unknown.shift = sure * share->error * steps_of(command, runs);
       one->take_command(model, column, mean_command(command, runs, share->value), std::move(unknown));
     }
     if (noise > 0.0) {

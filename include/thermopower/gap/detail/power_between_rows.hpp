@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -35,16 +34,13 @@ public:
         !posing_.model().own &&
         std::all_of(train_.begin(), train_.end(), [](const Inputs& one) { return is_set_anew(one); });
     if (!is_asked) return 0.0;
-    std::optional<std::array<double, signal_count>> sigma;
     Weight weight;
     std::array<double, tried> left{};
     for (std::size_t i = 0; i < tried; ++i) {
       let_change(step * static_cast<double>(i));
-      FitProblem problem = posing_.pose(train_, posing_.fitted(posing_.options().horizon_s));
-      if (sigma) problem.sigma = *sigma;
+      const FitProblem problem = posing_.pose(train_, posing_.fitted(posing_.options().horizon_s));
       const Candidate constants = Attribution(problem).fit({}, {});
-      if (!sigma) weight = correlation_of(constants, problem);
-      sigma = problem.sigma;
+      if (i == 0) weight = correlation_of(constants, problem);
       left[i] = misfit_of(constants.train, weight.correlation);
     }
     let_change(0.0);

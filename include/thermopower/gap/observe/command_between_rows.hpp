@@ -5,12 +5,10 @@
 #include <thermopower/gap/observe/command_noise.hpp>
 #include <thermopower/gap/observe/motion_regression.hpp>
 #include <thermopower/gap/rule.hpp>
-#include <thermopower/plant/samples.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -18,10 +16,9 @@
 #include <vector>
 
 /// @file command_between_rows.hpp
-/// What a command did between the rows, and how much of it is noise. A row's command holds until the next one: so says the
-/// format, and so it is where the loop that commands also logs. Where a log keeps each twentieth command of a faster loop,
-/// holding it is half a row late, and half a row late looks like compliance or a slow drive. Where a log keeps the current
-/// that a sensor measured, its noise is no torque. The motion tells which.
+/// The command of an axis between the rows, and its noise, as the motion shows them. By the format, a row's command holds until
+/// the next row. A log may keep each twentieth command of a faster loop. To hold it is then half a row late, which looks like
+/// compliance or a slow drive. A log may keep the current that a sensor measured. Its noise is not a torque.
 
 namespace thermopower::gap::engine {
 
@@ -30,189 +27,141 @@ namespace thermopower::gap::engine {
 struct CommandThresholds {
   double least_share = 0.2;  ///< every second command logged is felt by a quarter
   double most_share = 0.65;  ///< a command that changes steadily by half; more is another thing
-  double sure = 5.0;         ///< standard errors that a share differs from 0 by
+  double sure = 5.0;         ///< standard errors that a share differs from 0 by: one in 25 000, of 20 parts
   double precise = 0.08;     ///< largest standard error of the share
   double agree = 2.0;        ///< standard errors that two shares may differ by
   double matters = 0.2;      ///< noise scales of what half a row changes: less is nobody's concern
   double wander = 0.3;       ///< noise scales that a simulation wanders by: less is nobody's concern
 };
 
+/// Where a share may be none it is none; nothing where it is not known well enough.
+inline std::optional<Estimate> sure_of(Estimate share) {
+  constexpr CommandThresholds limit;
+  if (!(share.error < limit.precise)) return std::nullopt;
+  if (std::abs(share.value) < limit.sure * share.error) share.value = 0.0;
+  return share;
+}
+
+/// A share that is that of a command which went on; nothing of others. @param least  that it has at least
+inline std::optional<Estimate> steady_share(const std::optional<Estimate>& share, double least) {
+  return share && share->value > least && share->value < CommandThresholds().most_share ? share
+                                                                                        : std::nullopt;
+}
+
+/// Whether the motion follows the first term of a fit by enough to tell of the next. @param noise_dps  of the rate
+inline bool is_followed(const MotionFit& fit, double noise_dps) {
+  return fit.value[0] != 0.0 && !(0.5 * fit.first_dps < CommandThresholds().matters * noise_dps);
+}
+
 /// Asks the motion of axes what their command did.
 class CommandBetweenRows {
 public:
+  /// @param motion     of these axes; must outlive this object
   /// @param horizon_s  over which simulations will run: what noise matters is asked over it; not positive: whole runs
-  explicit CommandBetweenRows(double horizon_s = 0.5) : horizon_s_(horizon_s > 0.0 ? horizon_s : 1e9) {}
-
-  /// Adds a recording whose axis is driven by `command`. Keeps references to both: they must outlive this object.
-  void add(const Inputs& inputs, const Eigen::VectorXd& command) { motion_.add(inputs, command); }
-
-  /// Part of a command's next step, and how well it is known.
-  struct Share {
-    double value = 0.0;  ///< 0..1
-    double error = 0.0;  ///< standard error
-  };
-
-  /// How much of a command's next step the motion shows already before it is logged: 0 of a command that holds, 0.5 of one
-  /// that changes steadily, a little less where it is set some times between two rows; nothing where the recordings do not
-  /// tell.
-  std::optional<Share> share() const { return noise() > 0.0 ? share_of_noisy() : share_of_clean(); }
-
-  /// The share where the command went on between the rows; nothing where it held, where it was late, or where nobody knows.
-  std::optional<Share> steady() const { return steady_share(share(), CommandThresholds().least_share); }
-
-  /// A share that is that of a command which went on; nothing of others.
-  /// @param least  that it has at least
-  static std::optional<Share> steady_share(const std::optional<Share>& share, double least) {
-    constexpr CommandThresholds limit;
-    return share && share->value > least && share->value < limit.most_share ? share : std::nullopt;
-  }
-
-  /// A share and its standard error: none where it may be none, nothing where it is not known well enough.
-  static std::optional<Share> sure_of(const std::pair<double, double>& share) {
-    constexpr CommandThresholds limit;
-    if (!(share.second < limit.precise)) return std::nullopt;
-    return Share{std::abs(share.first) < limit.sure * share.second ? 0.0 : share.first, share.second};
-  }
-
-  /// Whether the motion follows the first term of a fit by enough to tell of the next. @param noise_dps  of the rate
-  static bool is_followed(const MotionFit& fit, double noise_dps) {
-    return fit.value[0] != 0.0 && !(0.5 * fit.first_dps < CommandThresholds().matters * noise_dps);
+  explicit CommandBetweenRows(const MotionRegression& motion, double horizon_s = 0.5)
+      : motion_(motion), smooth_(motion.fit(around_and_slope)) {
+    noise_ = find_noise(horizon_s > 0.0 ? horizon_s : 1e9);
+    if (noise_ > 0.0 && !holds(Rule::command_noise)) noise_ = 0.0;
   }
 
   /// Standard deviation of the noise in the command, in its unit: what it is rough by from row to row and no motion
   /// follows. 0 where there is none, where it moves no simulation over the horizon, or where nobody can tell.
-  double noise() const {
-    if (!noise_) noise_ = find_noise();
-    if (*noise_ > 0.0 && !holds(Rule::command_noise)) noise_ = 0.0;
-    return *noise_;
+  double noise() const { return noise_; }
+
+  /// How much of a command's next step the motion shows already before it is logged: 0 of a command that holds, 0.5 of one
+  /// that changes steadily, a little less where it is set some times between two rows; nothing where the recordings do not
+  /// tell.
+  ///
+  /// Noise of single rows would make every share a half, more so the fewer rows are taken together: means around the rows tell
+  /// first. Where these do not, a share that is the same for rows and for their means is no noise's, but that of a loop that went on
+  /// between the rows and whose own noise is in the command.
+  std::optional<Estimate> share() const {
+    const std::optional<Estimate> around_rows = share_around_rows();
+    if (noise_ > 0.0 && around_rows) return around_rows;
+    const std::optional<MotionFit> rows = motion_.fit(held_and_next());
+    const std::optional<Estimate> held = share_of_held(rows);
+    if (held || noise_ > 0.0) return held;
+    // Single rows may be too rough.
+    const std::optional<Estimate> from_rows = share_of(rows);
+    return from_rows && tells(smooth_) ? around_rows : from_rows;
   }
+
+  /// The share where the command went on between the rows; nothing where it held, where it was late, or where nobody knows.
+  std::optional<Estimate> steady() const { return steady_share(share(), CommandThresholds().least_share); }
 
 private:
   using Terms = MotionRegression::Terms;
   static constexpr Eigen::Index around = 4;  ///< rows before, and after, of a mean that noise hardly moves
 
-  template <std::size_t count>
-  static Terms terms(const double (&values)[count]) {
-    Terms list(static_cast<Eigen::Index>(count));
-    for (std::size_t i = 0; i < count; ++i) list[static_cast<Eigen::Index>(i)] = values[i];
-    return list;
-  }
-
   /// A row's command, its next step, and what a drive bends it by.
-  const MotionRegression::TermsOf& held_and_next() const {
-    if (held_and_next_) return held_and_next_;
-    held_and_next_ = [bent = motion_.bent_command()](const Inputs& inputs, const Eigen::VectorXd& c,
-                                                     const RunSpan& run, Eigen::Index k) {
+  MotionRegression::TermsOf held_and_next() const {
+    return [bent = motion_.bent_command()](const Inputs& inputs, const Eigen::VectorXd& c, const RunSpan& run,
+                                           Eigen::Index k) {
       const bool moves = k > run.begin || inputs.judged(Signal::rate_dps);
       if (k + 1 >= run.end || !moves) return Terms();
-      return terms({c[k], c[k + 1] - c[k], bent.small(c[k]), bent.large(c[k]),
-                    BentCommand::rubbed(c[k], MeasuredMotion(inputs, k).rate_dps)});
+      return Terms{{c[k], c[k + 1] - c[k], bent.small(c[k]), bent.large(c[k]),
+                    BentCommand::rubbed(c[k], MeasuredMotion(inputs, k).rate_dps)}};
     };
-    return held_and_next_;
   }
 
   /// Mean and slope of a row of a command around an interval.
   static Terms around_and_slope(const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
     if (k + 1 - around < run.begin || k + around >= run.end) return Terms();
     const double before = c.segment(k + 1 - around, around).mean(), after = c.segment(k + 1, around).mean();
-    return terms({0.5 * (before + after), (after - before) / static_cast<double>(around)});
-  }
-
-  /// From rows and means of them, else from the means around them where single rows are too rough.
-  std::optional<Share> share_of_clean() const {
-    const std::optional<MotionFit> rows = motion_.fit(held_and_next());
-    if (const std::optional<Share> held = share_of_held(rows)) return held;
-    const std::optional<Share> from_rows = rows ? share_of(*rows) : std::nullopt;
-    return from_rows && smooth() && tells(*smooth()) ? share_around_rows() : from_rows;
-  }
-
-  /// From means around the rows: the noise of single ones would make every share a half, more so the fewer rows are taken
-  /// together. Where these do not tell, a share that is the same for rows and for their means is no noise's, but that
-  /// of a loop that went on between the rows and whose own noise is in the command.
-  std::optional<Share> share_of_noisy() const {
-    const std::optional<Share> around_rows = share_around_rows();
-    return around_rows ? around_rows : share_of_held(motion_.fit(held_and_next()));
+    return Terms{{0.5 * (before + after), (after - before) / static_cast<double>(around)}};
   }
 
   /// From single rows and from means of them, as they can tell a command that holds from one that goes on: the more precise
   /// where both agree, else the means. A controller that was given a noisy motion has its noise in the command, and
   /// the acceleration from row to row the same: means of most rows are freest of that.
   /// @param rows  the fit of single ones
-  std::optional<Share> share_of_held(const std::optional<MotionFit>& rows) const {
-    constexpr CommandThresholds limit;
+  std::optional<Estimate> share_of_held(const std::optional<MotionFit>& rows) const {
     const auto told_by = [&](const std::optional<MotionFit>& fit) {
-      return fit && tells(*fit) ? share_of(*fit) : std::nullopt;
+      return tells(fit) ? share_of(fit) : std::nullopt;
     };
-    std::optional<Share> means;
-    for (const Eigen::Index together : {16, 8, 4})
+    std::optional<Estimate> means;
+    for (const std::size_t together : {16, 8, 4})
       if (!means) means = told_by(motion_.fit(held_and_next(), together));
-    const std::optional<Share> single = told_by(rows);
+    const std::optional<Estimate> single = told_by(rows);
     if (!means || !single) return means ? means : single;
-    const bool agree =
-        std::abs(single->value - means->value) < limit.agree * std::hypot(single->error, means->error);
+    const bool agree = std::abs(single->value - means->value) <
+                       CommandThresholds().agree * std::hypot(single->error, means->error);
     return agree && single->error < means->error ? single : means;
   }
 
-  std::optional<Share> share_around_rows() const {
-    const std::optional<MotionFit>& fit = smooth();
-    if (!fit || fit->value[0] == 0.0) return std::nullopt;
-    return sure_of(fit->estimate([](const Eigen::VectorXd& of) { return 0.5 + of[1] / of[0]; }));
+  std::optional<Estimate> share_around_rows() const {
+    return smooth_ && smooth_->value[0] != 0.0 ? sure_of(smooth_->second_by_first(0.5)) : std::nullopt;
   }
 
   /// Whether a share of none can be told from the least that is believed.
-  static bool tells(const MotionFit& fit) {
+  static bool tells(const std::optional<MotionFit>& fit) {
     constexpr CommandThresholds limit;
-    if (fit.value[0] == 0.0) return false;
-    const double error = fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }).second;
-    return limit.sure * error < limit.least_share;
+    return fit && fit->value[0] != 0.0 && limit.sure * fit->second_by_first().error < limit.least_share;
   }
 
   /// Of the next step of what the first term is.
-  std::optional<Share> share_of(const MotionFit& fit) const {
-    if (!is_followed(fit, motion_.noise(Signal::rate_dps))) return std::nullopt;
-    return sure_of(fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }));
+  std::optional<Estimate> share_of(const std::optional<MotionFit>& fit) const {
+    const bool is_told = fit && is_followed(*fit, motion_.noise(Signal::rate_dps));
+    return is_told ? sure_of(fit->second_by_first()) : std::nullopt;
   }
 
-  /// What of the command around each row the motion follows.
-  const std::optional<MotionFit>& smooth() const {
-    if (!smooth_) smooth_ = motion_.fit(around_and_slope);
-    return *smooth_;
-  }
-
-  /// What the command turns the rate by, deg/s^2 for each of its unit; 0 where nobody knows.
-  double response() const { return smooth() ? std::abs(smooth()->value[0]) : 0.0; }
-
-  double find_noise() const {
-    constexpr CommandThresholds limit;
-    const std::optional<MotionFit>& fit = smooth();
-    if (!fit) return 0.0;
-    const double response = this->response();
-    double step_s = 0.0;
-    Eigen::Index rows = 0;
-    for (const auto& one : motion_.recordings()) {
-      step_s = std::max(step_s, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
-      rows += one.inputs->rows();
-    }
-    CommandNoise spectra(step_s, rows);
-    for (const auto& one : motion_.recordings()) {
-      spectra.add(*one.inputs, *one.command,
-                  [&](double dps, double rad) { return MotionRegression::beside(*fit, dps, rad); });
-    }
-    const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);
+  double find_noise(double horizon_s) const {
+    if (!smooth_) return 0.0;
+    const CommandNoise spectra(motion_, *smooth_);
+    const double sd = spectra.sd();
     // A random walk of the rate, and its sum.
-    const double wander_dps = response * sd * std::sqrt(step_s * horizon_s_),
-                 wander_deg = wander_dps * horizon_s_ / std::sqrt(3.0);
-    const double noise_dps = motion_.noise(Signal::rate_dps), noise_deg = motion_.noise(Signal::angle_deg);
-    const bool matters = (noise_dps > 0.0 && wander_dps > limit.wander * noise_dps) ||
-                         (noise_deg > 0.0 && wander_deg > limit.wander * noise_deg);
-    return matters ? sd : 0.0;
+    const double wander_dps = std::abs(smooth_->value[0]) * sd * std::sqrt(spectra.step_s() * horizon_s),
+                 wander_deg = wander_dps * horizon_s / std::sqrt(3.0);
+    const auto matters = [&](double wander, Signal signal) {
+      const double noise = motion_.noise(signal);
+      return noise > 0.0 && wander > CommandThresholds().wander * noise;
+    };
+    return matters(wander_dps, Signal::rate_dps) || matters(wander_deg, Signal::angle_deg) ? sd : 0.0;
   }
 
-  double horizon_s_;
-  MotionRegression motion_;
-  mutable std::optional<double> noise_;                     ///< once it was asked for
-  mutable std::optional<std::optional<MotionFit>> smooth_;  ///< the same
-  mutable MotionRegression::TermsOf held_and_next_;         ///< the same
+  const MotionRegression& motion_;
+  std::optional<MotionFit> smooth_;  ///< what of the command around each row the motion follows
+  double noise_ = 0.0;
 };
 
 /// Steps of a command from each row to the next; 0 from a run's last one.
@@ -226,14 +175,12 @@ inline Eigen::VectorXd steps_of(const Eigen::VectorXd& command, const std::vecto
 /// Standard deviation of the command's mean until the next row that a straight line does not tell: a step between two rows is at
 /// any instant there, and of what a loop's own noise did meanwhile the rows say nothing. Where steps follow on each
 /// other as those of a smooth command do, nothing is unknown.
-/// @param steps  of the command, as steps_of() has them
-inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const Eigen::VectorXd& steps,
-                                       const std::vector<RunSpan>& runs) {
-  assert(steps.size() == command.size());
+inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs) {
   const double of_a_step = 1.0 / std::sqrt(12.0);  // a uniform distribution's
   // Of white noise: that of a mean of four or more, which nobody logged, and two fifths to a half of either end's.
   constexpr double of_noise = 0.7;
   const double noise = of_noise * white_scale(command, runs);
+  const Eigen::VectorXd steps = steps_of(command, runs);
   Eigen::VectorXd sd = Eigen::VectorXd::Zero(command.size());
   for (const RunSpan& run : runs)
     for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) {
@@ -250,11 +197,7 @@ inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const Eig
 ///               step of a loop holds a while
 inline Eigen::VectorXd mean_command(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs,
                                     double share) {
-  Eigen::VectorXd mean = command;
-  for (const RunSpan& run : runs)
-    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row)
-      mean[row] += share * (command[row + 1] - command[row]);
-  return mean;
+  return command + share * steps_of(command, runs);
 }
 
 }  // namespace thermopower::gap::engine

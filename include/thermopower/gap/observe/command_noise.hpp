@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/observe/motion_regression.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <Eigen/Core>
 
@@ -13,7 +14,7 @@
 #include <vector>
 
 /// @file command_noise.hpp
-/// What of a command is noise. A log often keeps the current that a sensor measured, not the one that was asked for: its
+/// The noise of a command. A log often keeps the current that a sensor measured, not the one that was asked for. Its
 /// noise turns nothing, and a simulation that is driven by it wanders.
 
 namespace thermopower::gap::engine {
@@ -22,7 +23,7 @@ namespace thermopower::gap::engine {
 /// Held by tests/gap/observe/command_test.cpp.
 struct CommandNoiseThresholds {
   double flat = 1.6;               ///< largest ratio to the lowest band of a spectrum that is its floor
-  std::size_t least_bins = 24;     ///< of the floor, and of what tells: less may be a shape of the command
+  double least_bins = 24.0;        ///< of the floor, and of what tells: less may be a shape of the command
   std::size_t least_windows = 20;  ///< fewer tell nothing
   Eigen::Index most_rows = 76800;  ///< of a recording that are looked at
   Eigen::Index shortest = 128;     ///< rows of a window
@@ -45,64 +46,37 @@ struct CommandNoiseThresholds {
 /// follows less, too, but with another phase and whatever the spectrum.
 class CommandNoise {
 public:
-  /// @param step_s  between rows
-  /// @param rows    of all recordings together
-  CommandNoise(double step_s, Eigen::Index rows) : length_(CommandNoiseThresholds().shortest) {
+  /// All that turns the axis beside its command is taken off the acceleration first: a stiff gear or a heavy arm that moves slowly
+  /// balances nearly all of the command, and its acceleration alone follows none of it.
+  /// @param fit  of that motion on the mean and the slope of its command around each row
+  CommandNoise(const MotionRegression& motion, const MotionFit& fit)
+      : response_(std::abs(fit.value[0])), ahead_rows_(0.5 + fit.value[1] / fit.value[0]) {
     constexpr CommandNoiseThresholds limit;
-    while (2 * length_ <= limit.longest && 2.0 * static_cast<double>(length_) * step_s <= limit.window_s &&
+    Eigen::Index rows = 0;
+    for (const MotionRegression::Driven& one : motion.recordings()) {
+      step_s_ = std::max(step_s_, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
+      rows += one.inputs->rows();
+    }
+    while (2 * length_ <= limit.longest && 2.0 * static_cast<double>(length_) * step_s_ <= limit.window_s &&
            rows / length_ >= 2 * static_cast<Eigen::Index>(limit.least_windows))
       length_ *= 2;
     spectrum_.resize(static_cast<std::size_t>(length_ / 2));
+    for (const MotionRegression::Driven& one : motion.recordings()) add(*one.inputs, *one.command, fit);
   }
 
-  /// Adds a recording of an axis that is driven by `command`, one for each row.
-  ///
-  /// What turns the axis beside its command is taken off the acceleration first: a stiff gear or a heavy arm that moves slowly
-  /// balances nearly all of the command, and its acceleration alone follows none of it.
-  /// @param beside  what that is, in deg/s^2, by rate in deg/s and angle in rad
-  template <class Beside>
-  void add(const Inputs& inputs, const Eigen::VectorXd& command, Beside&& beside) {
-    // Windows that overlap by a half, or fewer of a long recording.
-    const Eigen::Index stride =
-        std::max<Eigen::Index>(length_ / 2, inputs.rows() * length_ / CommandNoiseThresholds().most_rows);
-    for (const RunSpan& run : inputs.runs)
-      for (Eigen::Index from = run.begin + 1; from + length_ + 1 < run.end; from += stride) {
-        Eigen::VectorXd response(length_), driven(length_);
-        for (Eigen::Index i = 0; i < length_; ++i) {
-          const MeasuredMotion motion(inputs, from + i);
-          response[i] = motion.acceleration_dps2 -
-                        beside(motion.rate_dps, MotionRegression::angle_rad(inputs, from + i));
-          driven[i] = command[from + i];
-        }
-        if (fill_holes(response) && driven.allFinite()) take(response, driven);
-      }
-    before_rows_ = inputs.judged(Signal::rate_dps) ? 0.0 : 0.5;
-  }
+  /// The longest usual interval between rows.
+  double step_s() const { return step_s_; }
 
   /// Standard deviation of what is noise in the command, in its unit; 0 where nothing is, or nobody can tell.
-  /// @param response  what the command turns the rate by, deg/s^2 for each of its unit
-  /// @param share     rows by which the motion is ahead of the rows' commands: 0 where they hold, 0.5 where they go on
-  double sd(double response, double share) const {
+  double sd() const {
     constexpr CommandNoiseThresholds limit;
-    if (windows_ < limit.least_windows || !(response > 0.0)) return 0.0;
-    std::vector<Band> all(bands());
-    double lowest = 1e300;
-    for (std::size_t b = 0; b < all.size(); ++b) {
-      for (std::size_t bin = std::size_t{1} << b; bin < std::size_t{2} << b; ++bin) {
-        all[b].command += spectrum_[bin].command / count();
-        all[b].response += spectrum_[bin].response / count();
-        // A second difference of angles lies around a row, the difference of two rates after it.
-        all[b].cross += spectrum_[bin].cross / count() *
-                        std::polar(1.0, -(share - before_rows_) * turn * static_cast<double>(bin) /
-                                            static_cast<double>(length_));
-        ++all[b].bins;
-      }
-      lowest = std::min(lowest, all[b].command / all[b].bins);
-    }
-    double floor = 0.0, bins = 0.0;
+    if (windows_ < limit.least_windows || !(response_ > 0.0)) return 0.0;
+    const std::vector<Band> all = octaves();
+    double lowest = 1e300, floor = 0.0, bins = 0.0;
+    for (const Band& one : all) lowest = std::min(lowest, one.command / one.bins);
     for (const Band& one : all)
       if (one.command / one.bins < limit.flat * lowest) floor += one.command, bins += one.bins;
-    if (bins < static_cast<double>(limit.least_bins)) return 0.0;
+    if (bins < limit.least_bins) return 0.0;
     floor /= bins;
     if (!(floor > 0.0)) return 0.0;
     bool is_followed = false;
@@ -110,9 +84,9 @@ public:
     std::complex<double> rough = 0.0;
     for (const Band& one : all) {
       const double left = std::max(0.0, 1.0 - floor / (one.command / one.bins));
-      const std::complex<double> followed = one.cross / (response * one.command);
+      const std::complex<double> followed = one.cross / (response_ * one.command);
       const double error =
-          std::sqrt(one.response / one.command / (independent * count() * one.bins)) / response;
+          std::sqrt(one.response / one.command / (independent * count() * one.bins)) / response_;
       is_followed = is_followed || (left > limit.mostly && followed.real() > limit.mostly);
       if (left > limit.not_followed) {
         if (error < limit.error && left - followed.real() > limit.short_of + 3.0 * error) return 0.0;
@@ -133,7 +107,7 @@ public:
       if (std::abs(rough / rough_weight) > limit.match + 3.0 / std::sqrt(rough_weight)) return 0.0;
       witnesses += rough_bins;
     }
-    return is_followed && witnesses >= static_cast<double>(limit.least_bins) ? std::sqrt(floor) : 0.0;
+    return is_followed && witnesses >= limit.least_bins ? std::sqrt(floor) : 0.0;
   }
 
 private:
@@ -144,22 +118,31 @@ private:
     std::complex<double> cross = 0.0;
   };
 
+  void add(const Inputs& inputs, const Eigen::VectorXd& command, const MotionFit& fit) {
+    // Windows that overlap by a half, or fewer of a long recording.
+    const Eigen::Index stride =
+        std::max<Eigen::Index>(length_ / 2, inputs.rows() * length_ / CommandNoiseThresholds().most_rows);
+    for (const RunSpan& run : inputs.runs)
+      for (Eigen::Index from = run.begin + 1; from + length_ + 1 < run.end; from += stride) {
+        Eigen::VectorXd response(length_);
+        for (Eigen::Index i = 0; i < length_; ++i) {
+          const MeasuredMotion motion(inputs, from + i);
+          response[i] = motion.acceleration_dps2 - fit.beside(motion.rate_dps, motion.angle_rad);
+        }
+        const Eigen::VectorXd driven = command.segment(from, length_);
+        if (fill_holes(response) && driven.allFinite()) take(response, driven);
+      }
+    before_rows_ = inputs.judged(Signal::rate_dps) ? 0.0 : 0.5;
+  }
+
   /// Puts the mean where samples are missing; no where those are many.
   static bool fill_holes(Eigen::VectorXd& values) {
     const auto known = values.array().isFinite();
     const double holes = static_cast<double>(values.size() - known.count());
     if (holes > CommandNoiseThresholds().most_holes * static_cast<double>(values.size())) return false;
-    if (holes == 0.0) return true;
     const double mean = known.select(values.array(), 0.0).sum() / static_cast<double>(known.count());
     values = known.select(values.array(), mean).matrix().eval();
     return true;
-  }
-
-  /// Octaves of a window.
-  std::size_t bands() const {
-    std::size_t octaves = 0;
-    while ((std::size_t{2} << octaves) <= spectrum_.size()) ++octaves;
-    return octaves;
   }
 
   double count() const { return static_cast<double>(windows_); }
@@ -185,8 +168,30 @@ private:
     }
   }
 
-  Eigen::Index length_;         ///< rows of a window, a power of two
-  std::vector<Band> spectrum_;  ///< of each frequency
+  /// The sums of a window, octave by octave.
+  std::vector<Band> octaves() const {
+    std::vector<Band> all;
+    for (std::size_t first = 1; 2 * first <= spectrum_.size(); first *= 2) {
+      Band band;
+      for (std::size_t bin = first; bin < 2 * first; ++bin) {
+        band.command += spectrum_[bin].command / count();
+        band.response += spectrum_[bin].response / count();
+        // A second difference of angles lies around a row, the difference of two rates after it.
+        band.cross += spectrum_[bin].cross / count() *
+                      std::polar(1.0, -(ahead_rows_ - before_rows_) * turn * static_cast<double>(bin) /
+                                          static_cast<double>(length_));
+        ++band.bins;
+      }
+      all.push_back(band);
+    }
+    return all;
+  }
+
+  double response_;    ///< deg/s^2 that the command turns the rate by, for each of its unit
+  double ahead_rows_;  ///< of the motion before the rows' commands: 0 where they hold, 0.5 where they go on
+  double step_s_ = 0.0;
+  Eigen::Index length_ = CommandNoiseThresholds().shortest;  ///< rows of a window, a power of two
+  std::vector<Band> spectrum_;                               ///< of each frequency
   std::size_t windows_ = 0;
   double before_rows_ = 0.0;
 };

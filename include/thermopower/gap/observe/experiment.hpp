@@ -5,6 +5,7 @@
 #include <thermopower/gap/observe/prepared_recording.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -41,6 +42,13 @@ inline double largest_command(const Inputs& inputs) {
   return most;
 }
 
+/// The same of several recordings.
+inline double largest_command(const std::vector<PreparedRecording>& recordings) {
+  double most = missing;
+  for (const PreparedRecording& one : recordings) most = std::fmax(most, largest_command(one.inputs()));
+  return most;
+}
+
 /// The column that commands what is judged.
 inline std::string command_column(const Inputs& inputs) {
   if (inputs.closed_loop) return inputs.target_deg.size() > 0 ? "target_deg" : "target_dps";
@@ -53,6 +61,16 @@ inline std::string command_column(const Inputs& inputs) {
 inline double range_of(const Inputs& inputs, Signal signal) {
   std::vector<double> values = finite_samples(inputs.of(signal));
   return middle_range_of(values);
+}
+
+/// The widest range of every signal in some recordings, 0 where none judges it.
+inline std::array<double, signal_count> ranges_of(const std::vector<PreparedRecording>& recordings) {
+  std::array<double, signal_count> ranges{};
+  for (const PreparedRecording& one : recordings)
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (const auto signal = static_cast<Signal>(i); one.inputs().judged(signal))
+        ranges[i] = std::max(ranges[i], range_of(one.inputs(), signal));
+  return ranges;
 }
 
 /// Whether a body tells something though nothing drives it: it cools, or what is mounted next to it warms or cools as much.
@@ -114,7 +132,7 @@ inline bool is_part_of(const PreparedRecording& part, const PreparedRecording& w
   return false;
 }
 
-/// What is wrong with the experiment as a whole.
+/// Faults of the experiment as a whole.
 /// @param horizon_s  length of the axis' windows in s
 inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording>& train,
                                              const std::vector<PreparedRecording>& held_out,
@@ -123,11 +141,9 @@ inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording
   std::vector<Finding> findings;
   const auto add = [&](FindingKind kind, const PreparedRecording& where, const std::string& column,
                        const std::string& message, const std::string& mend) {
-    findings.push_back(
-        {kind, Severity::error, where.inputs().name, column, message, mend, FindingAction::none, {}});
+    findings.push_back({kind, Severity::error, where.inputs().name, column, message, mend});
   };
-  double driven = 0.0, slowest_s = 0.0;
-  bool any_command = false, by_others = false;
+  double slowest_s = 0.0;
   const PreparedRecording* slow = nullptr;
   for (const auto* all : {&train, &held_out})
     for (const PreparedRecording& one : *all)
@@ -141,32 +157,18 @@ inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording
                                                   : "sample faster, or ") +
             "judge over longer windows: --horizon " +
             short_number(std::ceil(10.0 * limit.rows_per_window * slowest_s * 2.0) / 10.0));
-  for (const PreparedRecording& one : train) {
-    const double most = largest_command(one.inputs());
-    if (!std::isfinite(most)) continue;
-    any_command = true;
-    by_others = by_others || is_driven_by_others(one.inputs());
-    driven = std::max(driven, most);
-  }
-  if (any_command && !(driven > 0.0) && !by_others && !train.empty())
+  const double driven = largest_command(train), held_driven = largest_command(held_out);
+  const bool by_others = std::any_of(train.begin(), train.end(), [](const PreparedRecording& one) {
+    return std::isfinite(largest_command(one.inputs())) && is_driven_by_others(one.inputs());
+  });
+  if (driven == 0.0 && !by_others)
     add(FindingKind::never_driven, train.front(), command_column(train.front().inputs()),
         "is 0 throughout: nothing was driven", "record while the actuator is driven at several levels");
-  std::array<double, signal_count> ranges{};
-  for (const PreparedRecording& one : train)
-    for (std::size_t i = 0; i < signal_count; ++i)
-      if (one.inputs().judged(static_cast<Signal>(i)))
-        ranges[i] = std::max(ranges[i], range_of(one.inputs(), static_cast<Signal>(i)));
-  bool held_driven = false, held_moves = false, held_known = false;
-  for (const PreparedRecording& one : held_out) {
-    const double most = largest_command(one.inputs());
-    held_known = held_known || std::isfinite(most);
-    held_driven = held_driven || most > limit.not_driven * driven;
-    for (std::size_t i = 0; i < signal_count; ++i)
-      held_moves =
-          held_moves || (one.inputs().judged(static_cast<Signal>(i)) &&
-                         range_of(one.inputs(), static_cast<Signal>(i)) > limit.not_moving * ranges[i]);
-  }
-  if (driven > 0.0 && held_known && !held_driven && !held_moves)
+  const std::array<double, signal_count> ranges = ranges_of(train), held_ranges = ranges_of(held_out);
+  bool held_moves = false;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    held_moves = held_moves || held_ranges[i] > limit.not_moving * ranges[i];
+  if (driven > 0.0 && held_driven <= limit.not_driven * driven && !held_moves)
     add(FindingKind::held_out_not_excited, held_out.front(), "",
         "is never driven and does not move: no model can be judged on it",
         "hold out data in which the actuator is driven");

@@ -5,7 +5,7 @@
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/normal_equations.hpp>
-#include <thermopower/gap/data/robust.hpp>
+#include <thermopower/gap/observe/command_between_rows.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 #include <thermopower/plant/samples.hpp>
 
@@ -31,14 +31,12 @@ namespace thermopower::gap::engine {
 /// Held by tests/gap/observe/heat_test.cpp.
 struct HeatThresholds {
   Eigen::Index block_rows = 17;  ///< through which a body goes as the terms say, but for a straight line
-  std::size_t parts = 20;        ///< of the blocks, for the jackknife
   std::size_t least_blocks = 6;  ///< in which the heat changes
   double least_share = 0.25;     ///< switched at any time is a half
   double most_share = 1.25;      ///< of the interval that is over is one
   double whole = 0.8;            ///< from here on it is the interval that is over
-  double sure = 5.0;      ///< standard errors that the share differs from 0 by: one in 25 000, of 20 parts
-  double agree = 2.5;     ///< standard errors that few and all bodies, and recordings, may differ by
-  double precise = 0.12;  ///< largest standard error of the share
+  double agree = 2.5;            ///< standard errors that few and all bodies, and recordings, may differ by
+  double precise = 0.12;         ///< largest standard error of the share
 };
 
 /// Asks temperatures when the heat changed.
@@ -70,7 +68,8 @@ public:
   std::optional<double> share() const {
     constexpr HeatThresholds limit;
     const Estimate best = told();
-    if (!(best.error < limit.precise) || !(best.value > limit.sure * best.error)) return std::nullopt;
+    if (!(best.error < limit.precise) || !(best.value > CommandThresholds().sure * best.error))
+      return std::nullopt;
     if (!(best.value > limit.least_share) || !(best.value < limit.most_share)) return std::nullopt;
     return best.value > limit.whole ? 1.0 : best.value;
   }
@@ -95,47 +94,41 @@ private:
     return at_once > 0.0 ? fitted[0] / at_once : plant::missing;
   }
 
-  struct Estimate {
-    double value = plant::missing, error = 1e9;
-  };
-
   /// The share as it is told best: one body tells more where it suffices (Hausman 1978, Econometrica 46).
   Estimate told() const {
-    constexpr HeatThresholds limit;
     const Estimate few = estimate(terms - 2), all = estimate(terms);
-    const bool suffices = std::abs(few.value - all.value) < limit.agree * all.error;
+    const bool suffices = std::abs(few.value - all.value) < HeatThresholds().agree * all.error;
     return suffices && few.error < all.error ? few : all;
   }
 
   Estimate estimate(Eigen::Index used) const {
     constexpr HeatThresholds limit;
-    if (blocks_.size() < limit.least_blocks) return {};
-    const std::size_t parts = std::min(limit.parts, blocks_.size());
+    const Estimate none{plant::missing, 1e9};
+    if (blocks_.size() < limit.least_blocks) return none;
+    const std::size_t parts = std::min(JackknifeThresholds().blocks, blocks_.size());
     std::vector<NormalEquations> sums(parts, NormalEquations(terms));
     for (std::size_t i = 0; i < blocks_.size(); ++i) sums[i * parts / blocks_.size()].add(blocks_[i], 1.0);
     const auto [all, without] =
         left_out(sums, [used](const NormalEquations& some) { return share_of(some, used); });
     const double error = jackknife_error(without);
-    if (!std::isfinite(error)) return {};
-    return {share_of(all, used), error};
+    return std::isfinite(error) ? Estimate{share_of(all, used), error} : none;
   }
 
-  /// What the heat of a run did until each of its rows, in J: a row of terms for each.
+  /// The terms of each row of a run: the effect of its heat until there, in J.
   static Eigen::MatrixXd heat_until(const Inputs& inputs, const Eigen::VectorXd& heat_W, const RunSpan& run,
                                     double usual_s) {
     constexpr std::array<double, bodies> hold{30.0, 6.0, 1.5};  // intervals
     Eigen::MatrixXd did(run.size(), terms);
-    std::array<double, terms> now{};
+    Eigen::RowVectorXd now = Eigen::RowVectorXd::Zero(terms);
     for (Eigen::Index row = run.begin; row < run.end; ++row) {
-      for (std::size_t k = 0; k < now.size(); ++k)
-        did(row - run.begin, static_cast<Eigen::Index>(k)) = now[k];
+      did.row(row - run.begin) = now;
       if (row + 1 == run.end) break;
       const double step_s = inputs.t_s[row + 1] - inputs.t_s[row];
       now[0] += (heat_W[row + 1] - heat_W[row]) * step_s;
       now[1] += heat_W[row] * step_s;
       for (std::size_t k = 0; k < bodies; ++k) {
         const double time_constant_s = hold[k] * usual_s, kept = std::exp(-step_s / time_constant_s);
-        double& held_J = now[k + 2];
+        double& held_J = now[static_cast<Eigen::Index>(k) + 2];
         held_J = kept * held_J + (1.0 - kept) * time_constant_s * heat_W[row];
       }
     }
@@ -144,35 +137,29 @@ private:
 
   /// Leaves of each column what its straight line does not tell. @param along  abscissa of the rows
   static void take_line_off(const Eigen::VectorXd& along, Eigen::MatrixXd& columns) {
-    const double middle = along.mean();
+    const Eigen::VectorXd away = along.array() - along.mean();
     double spread = 0.0;
-    for (Eigen::Index i = 0; i < along.size(); ++i) spread += (along[i] - middle) * (along[i] - middle);
-    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-      const double mean = columns.col(k).mean();
+    for (const double one : away) spread += one * one;
+    for (auto column : columns.colwise()) {
+      const double mean = column.mean();
       double slope = 0.0;
-      for (Eigen::Index i = 0; i < along.size(); ++i) slope += (along[i] - middle) * columns(i, k) / spread;
-      for (Eigen::Index i = 0; i < along.size(); ++i) columns(i, k) -= mean + slope * (along[i] - middle);
+      for (Eigen::Index i = 0; i < away.size(); ++i) slope += away[i] * column[i] / spread;
+      column.array() -= mean + slope * away.array();
     }
   }
 
   void add_block(const Inputs& inputs, const Eigen::Ref<const Eigen::MatrixXd>& did, Eigen::Index begin) {
-    const Eigen::VectorXd& motor_C = inputs.of(Signal::motor_C);
-    const Eigen::Index rows = did.rows();
+    const auto motor_C = inputs.of(Signal::motor_C).segment(begin, did.rows());
+    std::vector<Eigen::Index> read;
+    for (Eigen::Index i = 0; i < did.rows(); ++i)
+      if (std::isfinite(motor_C[i])) read.push_back(i);
+    const auto rows = static_cast<Eigen::Index>(read.size());
+    if (2 * rows < did.rows()) return;
     Eigen::MatrixXd left(rows, terms + 1);
-    Eigen::VectorXd along_s(rows);
-    Eigen::Index used = 0;
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      if (!std::isfinite(motor_C[begin + i])) continue;
-      for (Eigen::Index k = 0; k < terms; ++k) left(used, k) = did(i, k);
-      left(used, terms) = motor_C[begin + i];
-      along_s[used++] = inputs.t_s[begin + i] - inputs.t_s[begin];
-    }
-    if (2 * used < rows) return;
-    left.conservativeResize(used, terms + 1);
-    along_s.conservativeResize(used);
-    take_line_off(along_s, left);
+    left << did(read, Eigen::all), motor_C(read);
+    take_line_off(inputs.t_s.segment(begin, did.rows())(read).array() - inputs.t_s[begin], left);
     NormalEquations block(terms);
-    for (Eigen::Index i = 0; i < used; ++i) block.add(left.row(i).head(terms), left(i, terms));
+    for (Eigen::Index i = 0; i < rows; ++i) block.add(left.row(i).head(terms), left(i, terms));
     blocks_.push_back(std::move(block));
   }
 
@@ -216,7 +203,7 @@ inline std::string heat_column(const Inputs& inputs) {
   return inputs.heat == HeatSource::drive ? "drive_A" : "current_A";
 }
 
-/// What is said of a recording whose power was not held until the next row. @param share  as HeatBetweenRows::share()
+/// The finding about a recording whose power was not held until the next row. @param share  as HeatBetweenRows::share()
 inline Finding switched_between_rows(const std::string& recording, const Inputs& inputs, double share) {
   const bool late = share == 1.0;
   return {FindingKind::sampled_command,
@@ -229,9 +216,7 @@ inline Finding switched_between_rows(const std::string& recording, const Inputs&
                      " % of an interval on average, and what a simulation wanders by not knowing more "
                      "counts as noise",
           late ? "log the power that is set until the next row"
-               : "log the power when it is switched, or its mean between the rows",
-          FindingAction::none,
-          {}};
+               : "log the power when it is switched, or its mean between the rows"};
 }
 
 }  // namespace thermopower::gap::engine

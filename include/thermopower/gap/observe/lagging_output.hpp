@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -25,11 +24,9 @@ namespace thermopower::gap::engine {
 /// Thresholds of the question whether rate and angle belong together.
 /// Held by tests/gap/observe/lagging_output_test.cpp.
 struct LagThresholds {
-  std::size_t least_rows = 300;  ///< fewer do not tell
-  std::size_t blocks = 20;       ///< of the jackknife
-  double sure = 8.0;             ///< standard errors that a lag differs from 0 by
-  double matters = 0.5;          ///< noise scales of the rate that the lag makes: less is nobody's concern
-  double precise = 0.1;          ///< largest standard error of a lag, of the lag
+  double sure = 8.0;     ///< standard errors that a lag differs from 0 by
+  double matters = 0.5;  ///< noise scales of the rate that the lag makes: less is nobody's concern
+  double precise = 0.1;  ///< largest standard error of a lag, of the lag
   double within_a_row =
       0.5;  ///< intervals between rows up to which a late reading is as good as one a little earlier
 };
@@ -70,37 +67,32 @@ public:
       for (Eigen::Index k = run.begin + 1; k + 2 < run.end; ++k) {
         const double step_s = inputs.t_s[k + 1] - inputs.t_s[k];
         const double mean_dps = 0.5 * (dps[k] + dps[k + 1]), rad = 0.5 * (deg[k] + deg[k + 1]) * rad_per_deg;
-        Row row;
-        row.more_dps = (deg[k + 1] - deg[k]) / step_s - mean_dps;
-        row.steeper = (dps[k + 1] - dps[k]) / step_s;
-        row.others = {(dps[k + 2] - dps[k - 1]) / (inputs.t_s[k + 2] - inputs.t_s[k - 1]), 1.0, mean_dps,
-                      mean_dps * std::sin(rad), mean_dps * std::cos(rad)};
-        const auto known = [](double value) { return std::isfinite(value); };
-        if (known(row.more_dps) && std::all_of(row.others.begin(), row.others.end(), known))
-          rows_.push_back(row);
+        const Row row{(deg[k + 1] - deg[k]) / step_s - mean_dps,
+                      (dps[k + 1] - dps[k]) / step_s,
+                      {(dps[k + 2] - dps[k - 1]) / (inputs.t_s[k + 2] - inputs.t_s[k - 1]), 1.0, mean_dps,
+                       mean_dps * std::sin(rad), mean_dps * std::cos(rad)}};
+        if (std::isfinite(row.more_dps) && row.others.allFinite()) rows_.push_back(row);
       }
   }
 
-  /// Seconds that the rate comes behind the angle, negative where the angle does; nothing where they belong together or
-  /// nobody can tell.
-  std::optional<double> lag_s() const { return lag_and_others().lag_s; }
-
-  /// The same, and whether rate and angle differ by more than that.
+  /// The difference between rate and angle.
   struct Found {
-    std::optional<double> lag_s;  ///< as lag_s() has it
+    std::optional<double>
+        lag_s;  ///< that the rate comes behind the angle, negative where the angle does; nothing where
+                ///< they belong together or nobody can tell
     bool differ_by_more = false;  ///< whether a factor, or an eccentric encoder, makes more than the lag does
   };
-  /// Asks for both.
-  Found lag_and_others() const {
+  /// Asks the recordings.
+  Found found() const {
     constexpr LagThresholds limit;
-    if (rows_.size() < limit.least_rows) return {};
-    std::vector<NormalEquations> blocks(limit.blocks, NormalEquations(terms));
+    if (rows_.size() < JackknifeThresholds().least_rows) return {};
+    constexpr std::size_t parts = JackknifeThresholds().blocks;
+    std::vector<NormalEquations> blocks(parts, NormalEquations(terms));
     double squares = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const Eigen::Map<const Eigen::VectorXd> instruments(rows_[i].others.data(), terms);
-      Eigen::VectorXd regressors = instruments;
+      Vector regressors = rows_[i].others;
       regressors[0] = rows_[i].steeper;
-      blocks[i * limit.blocks / rows_.size()].add(instruments, regressors, rows_[i].more_dps);
+      blocks[i * parts / rows_.size()].add(rows_[i].others, regressors, rows_[i].more_dps);
       squares += rows_[i].others[0] * rows_[i].others[0] / static_cast<double>(rows_.size());
     }
     const auto [all, without] = left_out(blocks, [](const NormalEquations& sums) { return sums.solve()[0]; });
@@ -114,7 +106,7 @@ public:
     double made_by_others = 0.0;
     for (const Row& row : rows_) {
       double more = 0.0;
-      for (int k = 2; k < terms; ++k) more += coefficients[k] * row.others[static_cast<std::size_t>(k)];
+      for (int k = 2; k < terms; ++k) more += coefficients[k] * row.others[k];
       made_by_others += more * more / static_cast<double>(rows_.size());
     }
     return {lag, std::sqrt(made_by_others) > made_by_lag};
@@ -122,9 +114,10 @@ public:
 
 private:
   static constexpr int terms = 5;
+  using Vector = Eigen::Matrix<double, terms, 1>;
   struct Row {
-    double more_dps = 0.0, steeper = 0.0;
-    std::array<double, terms> others{};  ///< the instrument, and what else makes a difference
+    double more_dps, steeper;
+    Vector others;  ///< the instrument, and what else makes a difference
   };
 
   std::vector<Row> rows_;

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/observe/bent_command.hpp>
 #include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>
@@ -20,7 +19,7 @@
 #include <vector>
 
 /// @file motion_regression.hpp
-/// What of a command the motion follows, before any model: the acceleration between rows, regressed on terms of the command
+/// How the motion follows a command, before any model: the acceleration between rows, regressed on terms of the command
 /// and on what else turns most axes.
 
 namespace thermopower::gap::engine {
@@ -30,31 +29,71 @@ namespace thermopower::gap::engine {
 struct MeasuredMotion {
   double acceleration_dps2;  ///< deg/s^2
   double rate_dps;           ///< mean over the same, deg/s
+  double angle_rad = 0.0;    ///< the same, rad; 0 where no angle is judged
 
   /// @param row  neither the first nor the last of its run
   MeasuredMotion(const Inputs& inputs, Eigen::Index row) {
-    const bool by_rate = inputs.judged(Signal::rate_dps);
-    const Eigen::VectorXd& values = inputs.of(by_rate ? Signal::rate_dps : Signal::angle_deg);
-    const double step_s = inputs.t_s[row + 1] - inputs.t_s[row],
-                 after = (values[row + 1] - values[row]) / step_s;
-    if (by_rate) {
-      acceleration_dps2 = after;
-      rate_dps = 0.5 * (values[row] + values[row + 1]);
+    const Eigen::VectorXd &dps = inputs.of(Signal::rate_dps), &deg = inputs.of(Signal::angle_deg);
+    const double step_s = inputs.t_s[row + 1] - inputs.t_s[row];
+    if (inputs.judged(Signal::rate_dps)) {
+      acceleration_dps2 = (dps[row + 1] - dps[row]) / step_s;
+      rate_dps = 0.5 * (dps[row] + dps[row + 1]);
+      if (inputs.judged(Signal::angle_deg)) angle_rad = 0.5 * (deg[row] + deg[row + 1]) * rad_per_deg;
       return;
     }
     const double before_s = inputs.t_s[row] - inputs.t_s[row - 1],
-                 before = (values[row] - values[row - 1]) / before_s;
+                 before = (deg[row] - deg[row - 1]) / before_s, after = (deg[row + 1] - deg[row]) / step_s;
     acceleration_dps2 = 2.0 * (after - before) / (step_s + before_s);
     rate_dps = 0.5 * (after + before);
+    angle_rad = deg[row] * rad_per_deg;
   }
+};
+
+/// The torque that a drive may give beside one in proportion to its command: less of a small one, as a dead band does, less of a large
+/// one, as saturation does, and less of one that its gears rub. In a loop the command falls as it is followed, and what a small one gives
+/// less of passes for a part of the next one without these.
+class BentCommand {
+public:
+  /// @param commands  that there are, in one unit
+  explicit BentCommand(const std::vector<const Eigen::VectorXd*>& commands) {
+    const double squares = sum_over(commands, [](double c) { return c * c; }),
+                 count = sum_over(commands, [](double) { return 1.0; });
+    if (!(squares > 0.0)) return;
+    usual_ = std::sqrt(squares / count);
+    small_part_ = sum_over(commands, [&](double c) { return c * part_of_small(c); }) / squares;
+    large_part_ = sum_over(commands, [&](double c) { return c * part_of_large(c); }) / squares;
+  }
+
+  /// Grows in the smallest commands alone; without what of it is in proportion to all of them.
+  double small(double command) const { return part_of_small(command) - small_part_ * command; }
+  /// Grows most in the largest; without the same.
+  double large(double command) const { return part_of_large(command) - large_part_ * command; }
+  /// The part that gears rub off, against the motion. @param rate  its sign counts
+  static double rubbed(double command, double rate) { return std::copysign(command, rate); }
+
+private:
+  template <class Of>
+  static double sum_over(const std::vector<const Eigen::VectorXd*>& commands, Of&& of) {
+    double sum = 0.0;
+    for (const Eigen::VectorXd* all : commands)
+      for (const double one : *all)
+        if (std::isfinite(one)) sum += of(one);
+    return sum;
+  }
+  double part_of_small(double command) const {
+    constexpr double small = 0.1;  // of what is usual
+    return command / std::hypot(command, small * usual_);
+  }
+  double part_of_large(double command) const { return command * std::abs(command) / usual_; }
+
+  double usual_ = 1.0;  ///< root mean square
+  double small_part_ = 0.0, large_part_ = 0.0;
 };
 
 /// Thresholds of a regression of the motion on its command.
 /// Held by tests/gap/observe/command_test.cpp and tests/gap/observe/lagging_output_test.cpp.
 struct MotionThresholds {
-  std::size_t least_rows = 300;   ///< that move: fewer do not tell
-  std::size_t most_rows = 30000;  ///< that are looked at
-  std::size_t blocks = 20;        ///< of the jackknife
+  std::size_t most_rows = 30000;  ///< that move and are looked at
   double moving = 0.05;           ///< of the rate's 95th percentile: slower rows may be stuck
   int periods = 2;                ///< of the angle that are taken away
   int most_cogs = 60;             ///< a turn
@@ -69,12 +108,31 @@ struct MotionFit {
   Eigen::VectorXd beside_value = {};  ///< coefficients of what turns the axis beside the command
   std::vector<int> cogs = {};         ///< periods a turn among that
 
-  /// A number made of the coefficients, and its standard error.
-  template <class Of>
-  std::pair<double, double> estimate(Of&& of) const {
+  /// The second term's coefficient by the first one's. @param more  that is added to it
+  Estimate second_by_first(double more = 0.0) const {
+    const auto ratio = [more](const Eigen::VectorXd& of) { return more + of[1] / of[0]; };
     std::vector<double> left_out;
-    for (const Eigen::VectorXd& one : without) left_out.push_back(of(one));
-    return {of(value), jackknife_error(left_out)};
+    for (const Eigen::VectorXd& one : without) left_out.push_back(ratio(one));
+    return {ratio(value), jackknife_error(left_out)};
+  }
+
+  /// Terms of what turns an axis beside its command and its cogs: friction, a spring, an imbalance and a constant.
+  static Eigen::Matrix<double, 7, 1> beside_terms(double dps, double rad) {
+    const plant::SineCosine once(rad);
+    return {dps, std::abs(dps), dps > 0.0 ? 1.0 : -1.0, rad, once.sine, once.cosine, 1.0};
+  }
+
+  /// The acceleration beside that by the command, deg/s^2. @param dps  the rate @param rad  the angle
+  double beside(double dps, double rad) const {
+    Eigen::VectorXd terms(beside_value.size());
+    Eigen::Index at = 7;
+    terms.head(at) = beside_terms(dps, rad);
+    for (const int one : cogs) {
+      const plant::SineCosine often(one * rad);
+      terms[at++] = often.sine;
+      terms[at++] = often.cosine;
+    }
+    return terms.dot(beside_value);
   }
 };
 
@@ -95,12 +153,12 @@ public:
     const Eigen::VectorXd* command;  ///< one for each row
   };
 
-  /// Adds a recording of an axis that is driven by `command`; of what is none nothing. Keeps references to both: they must outlive this object.
+  /// Adds a recording of an axis that is driven by `command`, and nothing else. Both must outlive this object.
   void add(const Inputs& inputs, const Eigen::VectorXd& command) {
     if (command.size() > 0 && inputs.axis()) recordings_.push_back({&inputs, &command});
   }
 
-  /// What was added.
+  /// All that were added.
   const std::vector<Driven>& recordings() const { return recordings_; }
 
   /// Noise scale of a signal in the worst recording; 0 where none is judged.
@@ -125,207 +183,122 @@ public:
     return slowest_of(all);
   }
 
-  /// What turns the axis beside its command, by a fit: friction, a spring, an imbalance, a constant and cogs, in deg/s^2.
-  /// @param dps  the rate
-  /// @param rad  the angle
-  static double beside(const MotionFit& fit, double dps, double rad) {
-    return beside_terms(dps, rad, fit.cogs).dot(fit.beside_value);
-  }
-
-  /// The angle of a row as the regression has it, 0 where none is judged, rad.
-  static double angle_rad(const Inputs& inputs, Eigen::Index row) {
-    if (!inputs.judged(Signal::angle_deg)) return 0.0;
-    const Eigen::VectorXd& deg = inputs.of(Signal::angle_deg);
-    return (inputs.judged(Signal::rate_dps) ? 0.5 * (deg[row] + deg[row + 1]) : deg[row]) * rad_per_deg;
-  }
-
   /// The coefficients; nothing where too few rows move.
   /// @param together  rows whose mean, under a bell, is a sample of the regression. The regression is linear, so that means obey it, too,
   ///                  but differences of positions from row to row are mostly their noise, and its means hardly any
-  std::optional<MotionFit> fit(const TermsOf& terms_of, Eigen::Index together = 1) const {
-    constexpr MotionThresholds limit;
+  std::optional<MotionFit> fit(const TermsOf& terms_of, std::size_t together = 1) const {
+    constexpr auto parts = static_cast<Eigen::Index>(JackknifeThresholds().blocks);
     const std::vector<Row> rows = moving_rows(terms_of, together);
-    if (rows.size() < limit.least_rows) return std::nullopt;
+    if (rows.size() < JackknifeThresholds().least_rows) return std::nullopt;
     const Regressors regressors(rows);
-    const Eigen::Index count = regressors.terms().rows(), terms = rows.front().terms.size();
+    const Eigen::Index count = regressors.terms.rows(), terms = rows.front().size() - first_term;
     std::vector<NormalEquations> blocks;
-    NormalEquations all(regressors.terms().cols());
-    const auto parts = static_cast<Eigen::Index>(limit.blocks);
     for (Eigen::Index k = 0; k < parts; ++k) {
       const Eigen::Index begin = (count * k + parts - 1) / parts, end = (count * (k + 1) + parts - 1) / parts;
-      blocks.emplace_back(regressors.terms().middleRows(begin, end - begin),
-                          regressors.responses().segment(begin, end - begin));
-      all.add(blocks.back(), 1.0);
+      blocks.emplace_back(regressors.terms.middleRows(begin, end - begin),
+                          regressors.responses.segment(begin, end - begin));
     }
     MotionFit fit;
+    const auto coefficients = [&](const NormalEquations& some) -> Eigen::VectorXd {
+      return some.solve().head(terms);
+    };
+    const auto [all, without] = left_out(blocks, coefficients);
     const Eigen::VectorXd solved = all.solve();
     fit.value = solved.head(terms);
     if (!fit.value.allFinite()) return std::nullopt;
+    fit.without = without;
     fit.beside_value = solved.tail(solved.size() - terms);
-    fit.cogs = regressors.cogs();
-    for (const NormalEquations& one : blocks) {
-      NormalEquations rest = all;
-      rest.add(one, -1.0);
-      fit.without.push_back(rest.solve().head(terms));
-    }
+    fit.cogs = regressors.cogs;
     double squares = 0.0;
     for (const Row& row : rows) {
-      const double by_dps = fit.value[0] * row.terms[0] * row.step_s;
+      const double by_dps = fit.value[0] * row[first_term] * row[step_s];
       squares += by_dps * by_dps / static_cast<double>(rows.size());
     }
     const double left_squares =
-        (regressors.responses() - regressors.terms() * solved).squaredNorm() / static_cast<double>(count);
+        (regressors.responses - regressors.terms * solved).squaredNorm() / static_cast<double>(count);
     fit.first_dps = std::sqrt(squares);
     fit.left_dps2 = std::sqrt(left_squares);
     return fit;
   }
 
 private:
-  struct Row {
-    double response = 0.0, dps = 0.0, rad = 0.0, step_s = 0.0;
-    Terms terms;
-  };
+  /// A sample of the regression: what the enumerators say, and the command's terms.
+  using Row = Eigen::VectorXd;
+  enum : Eigen::Index { response_dps2, rate_dps, angle_rad, step_s, first_term };
 
-  /// Makes means of neighbours, each window half a window after the one before.
-  class Means {
-  public:
-    explicit Means(Eigen::Index together) : together_(static_cast<std::size_t>(together)) {}
-
-    /// Takes a row of a recording. @param next  it is the neighbour of the one before
-    void take(const Row& row, bool next, std::vector<Row>& means) {
-      if (!next) rows_.clear();
-      rows_.push_back(row);
-      if (rows_.size() < together_) return;
-      means.push_back(mean());
-      rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>((together_ + 1) / 2));
+  /// Mean of neighbours, under a bell.
+  static Row mean_of(const std::vector<Row>& rows) {
+    constexpr double turn = 6.283185307179586;
+    Row all = Row::Zero(rows.front().size());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double weight =
+          1.0 - std::cos(turn * (static_cast<double>(i) + 0.5) / static_cast<double>(rows.size()));
+      sum += weight;
+      all += weight * rows[i];
     }
-
-  private:
-    Row mean() const {
-      Row all = rows_.front();
-      if (rows_.size() == 1) return all;
-      all.response = all.dps = all.rad = all.step_s = 0.0;
-      all.terms.setZero();
-      double sum = 0.0;
-      for (std::size_t i = 0; i < rows_.size(); ++i) {
-        constexpr double turn = 6.283185307179586;
-        const double weight =
-            1.0 - std::cos(turn * (static_cast<double>(i) + 0.5) / static_cast<double>(rows_.size()));
-        sum += weight;
-        all.response += weight * rows_[i].response;
-        all.dps += weight * rows_[i].dps;
-        all.rad += weight * rows_[i].rad;
-        all.step_s += weight * rows_[i].step_s;
-        all.terms += weight * rows_[i].terms;
-      }
-      for (double* one : {&all.response, &all.dps, &all.rad, &all.step_s}) *one /= sum;
-      all.terms /= sum;
-      return all;
-    }
-
-    std::size_t together_;
-    std::vector<Row> rows_;
-  };
-
-  static constexpr Eigen::Index others =
-      7;  ///< of what turns the axis beside the command, the cogs not counted
-
-  /// What turns the axis beside the command and its cogs.
-  static Eigen::Matrix<double, others, 1> uncogged_terms(double dps, double rad) {
-    const plant::SineCosine once(rad);
-    Eigen::Matrix<double, others, 1> x;
-    x << dps, std::abs(dps), dps > 0.0 ? 1.0 : -1.0, rad, once.sine, once.cosine, 1.0;
-    return x;
-  }
-
-  static Eigen::VectorXd beside_terms(double dps, double rad, const std::vector<int>& cogs_a_turn) {
-    Eigen::VectorXd x(others + 2 * static_cast<Eigen::Index>(cogs_a_turn.size()));
-    x.head(others) = uncogged_terms(dps, rad);
-    Eigen::Index at = others;
-    for (const int cogs : cogs_a_turn) {
-      const plant::SineCosine often(cogs * rad);
-      x[at++] = often.sine;
-      x[at++] = often.cosine;
-    }
-    return x;
+    return all / sum;
   }
 
   /// The rows of the regression: the command's terms and what turns the axis beside it, the cogs last.
-  class Regressors {
-  public:
+  struct Regressors {
+    Eigen::MatrixXd terms;
+    Eigen::VectorXd responses;
+    std::vector<int> cogs;  ///< periods a turn that are among the terms
+
     explicit Regressors(const std::vector<Row>& rows) {
-      const Eigen::Index terms = rows.front().terms.size(), count = static_cast<Eigen::Index>(rows.size()),
-                         uncogged = terms + others;
-      terms_.resize(count, uncogged + 2 * MotionThresholds().periods);
-      responses_.resize(count);
+      constexpr MotionThresholds limit;
+      const Eigen::Index of_command = rows.front().size() - first_term,
+                         count = static_cast<Eigen::Index>(rows.size()), uncogged = of_command + 7;
+      terms.resize(count, uncogged + 2 * limit.periods);
+      responses.resize(count);
       for (Eigen::Index i = 0; i < count; ++i) {
         const Row& row = rows[static_cast<std::size_t>(i)];
-        terms_.row(i).head(terms) = row.terms;
-        terms_.row(i).segment(terms, others) = uncogged_terms(row.dps, row.rad);
-        responses_[i] = row.response;
+        terms.row(i).head(of_command) = row.tail(of_command);
+        terms.row(i).segment(of_command, 7) = MotionFit::beside_terms(row[rate_dps], row[angle_rad]);
+        responses[i] = row[response_dps2];
       }
-      for (int found = 0; found < MotionThresholds().periods; ++found) {
-        const Eigen::Index used = uncogged + 2 * found;
-        cogs_.push_back(strongest_beside(used, uncogged - 2));
+      for (Eigen::Index used = uncogged; used < terms.cols(); used += 2) {
+        cogs.push_back(strongest_beside(used, uncogged - 2));
         for (Eigen::Index i = 0; i < count; ++i) {
-          const plant::SineCosine often(cogs_.back() * rows[static_cast<std::size_t>(i)].rad);
-          terms_(i, used) = often.sine;
-          terms_(i, used + 1) = often.cosine;
+          const plant::SineCosine often(cogs.back() * rows[static_cast<std::size_t>(i)][angle_rad]);
+          terms(i, used) = often.sine;
+          terms(i, used + 1) = often.cosine;
         }
       }
     }
 
-    const Eigen::MatrixXd& terms() const { return terms_; }
-    const Eigen::VectorXd& responses() const { return responses_; }
-    /// Periods a turn that are among the terms.
-    const std::vector<int>& cogs() const { return cogs_; }
-
-  private:
     /// Cogs a turn of the strongest period of the angle in what the first terms leave.
     /// @param used    so many of them
     /// @param cosine  column of the cosine of the angle; the sine's is the one before
     int strongest_beside(Eigen::Index used, Eigen::Index cosine) const {
-      const auto by = terms_.leftCols(used);
-      const Eigen::VectorXd left = responses_ - by * NormalEquations(by, responses_).solve();
-      const auto cos = terms_.col(cosine).array(), sin = terms_.col(cosine - 1).array();
+      const auto by = terms.leftCols(used);
+      const Eigen::VectorXd left = responses - by * NormalEquations(by, responses).solve();
+      const auto cos = terms.col(cosine).array(), sin = terms.col(cosine - 1).array();
       Eigen::ArrayXd real = left.array() * cos, imaginary = left.array() * sin,
                      turned;  // of one period a turn
       int strongest = 0;
       double most = -1.0;
       // From two on: one is an imbalance.
-      for (int cogs = 2; cogs <= MotionThresholds().most_cogs + 2; ++cogs) {
+      for (int often = 2; often <= MotionThresholds().most_cogs + 2; ++often) {
         turned = real * cos - imaginary * sin;
         imaginary = real * sin + imaginary * cos;
         real.swap(turned);
         const double size = std::norm(std::complex<double>(real.sum(), imaginary.sum()));
-        if (size > most) most = size, strongest = cogs;
+        if (size > most) most = size, strongest = often;
       }
       return strongest;
     }
-
-    Eigen::MatrixXd terms_;
-    Eigen::VectorXd responses_;
-    std::vector<int> cogs_;
   };
 
-  /// Hands each row with an acceleration to `use(driven, run, row, motion)`.
-  using UseRow = std::function<void(const Driven& driven, const RunSpan& run, Eigen::Index row,
-                                    const MeasuredMotion& motion)>;
-  void for_each_row(const UseRow& use) const {
-    for (const Driven& one : recordings_) {
-      const Inputs& inputs = *one.inputs;
-      for (const RunSpan& run : inputs.runs)
-        for (Eigen::Index k = run.begin + 1; k + 1 < run.end; ++k)
-          use(one, run, k, MeasuredMotion(inputs, k));
-    }
-  }
-
-  /// What each row with a motion turns by, deg/s, without its sign.
+  /// The speed of each row with a motion, deg/s.
   std::vector<double> speeds() const {
     std::vector<double> all;
-    for_each_row([&](const Driven&, const RunSpan&, Eigen::Index, const MeasuredMotion& motion) {
-      if (std::isfinite(motion.rate_dps)) all.push_back(std::abs(motion.rate_dps));
-    });
+    for (const Driven& one : recordings_)
+      for (const RunSpan& run : one.inputs->runs)
+        for (Eigen::Index k = run.begin + 1; k + 1 < run.end; ++k)
+          if (const double dps = MeasuredMotion(*one.inputs, k).rate_dps; std::isfinite(dps))
+            all.push_back(std::abs(dps));
     return all;
   }
 
@@ -334,41 +307,45 @@ private:
     return MotionThresholds().moving * quantile_of(speeds, 0.95);
   }
 
-  /// Rows that move, at most as many as are needed.
-  std::vector<Row> moving_rows(const TermsOf& terms_of, Eigen::Index together) const {
-    constexpr MotionThresholds limit;
+  /// The terms of a row; without a rate its acceleration is one of the intervals before and after, and so are they.
+  static Terms terms_at(const Driven& one, const TermsOf& terms_of, const RunSpan& run, Eigen::Index row) {
+    const Terms after = terms_of(*one.inputs, *one.command, run, row);
+    if (one.inputs->judged(Signal::rate_dps) || after.size() == 0) return after;
+    const Terms before = terms_of(*one.inputs, *one.command, run, row - 1);
+    return before.size() == 0 ? before : Terms(0.5 * (after + before));
+  }
+
+  /// Rows that move, at most as many as are needed, or means of them, each window half a window after the one before.
+  std::vector<Row> moving_rows(const TermsOf& terms_of, std::size_t together) const {
     std::vector<double> all = speeds();
     const double slowest = slowest_of(all);
     const auto fast = std::count_if(all.begin(), all.end(), [&](double speed) { return speed > slowest; });
-    const std::size_t stride =
-        together > 1 ? 1 : static_cast<std::size_t>(fast) / limit.most_rows + 1;  // means need neighbours
+    const std::size_t stride = together > 1 ? 1
+                                            : static_cast<std::size_t>(fast) / MotionThresholds().most_rows +
+                                                  1;  // means need neighbours
     std::vector<Row> moving;
-    Means means(together);
-    const RunSpan* last_run = nullptr;
-    Eigen::Index last = -1;
     std::size_t count = 0;
-    for_each_row([&](const Driven& one, const RunSpan& run, Eigen::Index k, const MeasuredMotion& motion) {
-      if (!(std::abs(motion.rate_dps) > slowest) || count++ % stride != 0) return;
-      const Inputs& inputs = *one.inputs;
-      const bool by_rate = inputs.judged(Signal::rate_dps);
-      Row row;
-      row.response = motion.acceleration_dps2;
-      row.dps = motion.rate_dps;
-      row.step_s = inputs.t_s[k + 1] - inputs.t_s[k];
-      row.rad = angle_rad(inputs, k);
-      row.terms = terms_of(inputs, *one.command, run, k);
-      if (!by_rate && row.terms.size() > 0) {  // a second difference: of the intervals before and after
-        const Terms before = terms_of(inputs, *one.command, run, k - 1);
-        if (before.size() == 0) return;
-        row.terms = 0.5 * (row.terms + before);
+    for (const Driven& one : recordings_)
+      for (const RunSpan& run : one.inputs->runs) {
+        std::vector<Row> neighbours;
+        Eigen::Index last = -1;
+        for (Eigen::Index k = run.begin + 1; k + 1 < run.end; ++k) {
+          const MeasuredMotion motion(*one.inputs, k);
+          if (!(std::abs(motion.rate_dps) > slowest) || count++ % stride != 0) continue;
+          const Terms terms = terms_at(one, terms_of, run, k);
+          Row row(first_term + terms.size());
+          row << motion.acceleration_dps2, motion.rate_dps, motion.angle_rad,
+              one.inputs->t_s[k + 1] - one.inputs->t_s[k], terms;
+          if (terms.size() == 0 || !row.allFinite()) continue;
+          if (k != last + 1) neighbours.clear();
+          last = k;
+          neighbours.push_back(std::move(row));
+          if (neighbours.size() < together) continue;
+          moving.push_back(mean_of(neighbours));
+          neighbours.erase(neighbours.begin(),
+                           neighbours.begin() + static_cast<std::ptrdiff_t>((together + 1) / 2));
+        }
       }
-      if (row.terms.size() > 0 && row.terms.allFinite() && std::isfinite(row.response) &&
-          std::isfinite(row.rad)) {
-        means.take(row, last_run == &run && last + 1 == k, moving);
-        last_run = &run;
-        last = k;
-      }
-    });
     return moving;
   }
 

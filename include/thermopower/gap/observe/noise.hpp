@@ -26,7 +26,6 @@ namespace thermopower::gap::engine {
 struct NoiseThresholds {
   double farthest =
       8.0;  ///< robust scales of a lag's differences beyond which one counts as a jump of its own
-  int longest_lag = 64;           ///< samples
   double pairs_per_lag = 4000.0;  ///< differences looked at for one lag
   std::size_t least_pairs = 12;   ///< a lag with fewer tells nothing
   std::size_t block = 150;        ///< samples that have a scale of their own (runs differ)
@@ -66,39 +65,11 @@ struct MostNoise {
   }
 };
 
-/// Standard deviation of the noise in a residual: white, coloured up to an AR(1) of 0.97, with heavy tails, other in
-/// other parts of the sequence; without what a wrong model leaves.
-///
-/// A variogram of differences, each scaled by its block's own robust scale, is fitted by non-negative least squares as
-/// a sum of noise (white, AR(1) of 0.5 to 0.97) and of what is none (smooth errors, slow ones); see
-/// @ref NoiseThresholds. Cressie, Statistics for Spatial Data (1993), sections 2.4 and 2.6.
-/// @param sequence  residuals in order
-/// @param gaps      as long; `gaps[i]` true: entry i does not follow on entry i-1
-/// @param quantum   of the measured channel, 0 where it has none; a rounded channel has at least the noise of rounding
-/// @param levels    as long, or empty: of what the error of a model jumps with; samples at levels farther apart than
-///                  NoiseThresholds::same_level tell nothing of each other, those at the same level do across the jumps
-/// @param measured  as long, or empty: what was measured, where the simulation has no noise of its own; what noise there is
-///                  is in it, too, and where it is smooth there is little
-/// @param most      of noise that remembers; white noise is as large as the residual says
-/// @return 0 where there are too few samples; never more than the root mean square of the sequence
-double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0,
-                const std::vector<double>& levels = {}, const std::vector<double>& measured = {},
-                const MostNoise& most = {});
-
 /// The noise in a residual.
 struct NoiseEstimate {
-  double sd = 0.0;  ///< as noise_sd() has it
-  double by_chance =
-      0.0;  ///< root mean square up to which the residual may be noise alone, see noise_of_sequence()
+  double sd = 0.0;  ///< standard deviation; 0 of too few samples, never more than the root mean square of all
+  double by_chance = 0.0;  ///< root mean square up to which the residual may be noise alone
 };
-
-/// The same, and how large the residual may be with nothing but noise in it: of the sums that explain the variogram as
-/// well (NoiseThresholds::as_likely), the one with the most noise, whose mean square over so few samples may be larger by
-/// chance the longer it remembers (one-sided 99.5 %). White noise knows itself; a few hundred samples of noise that remembers
-/// twenty know it to a third.
-NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
-                                double quantum = 0.0, const std::vector<double>& levels = {},
-                                const std::vector<double>& measured = {}, const MostNoise& most = {});
 
 /// Factor by which the noise of a mean of samples is larger than that of as many independent ones, at most: an AR(1)'s.
 inline double most_of_a_mean() {
@@ -258,60 +229,75 @@ inline bool jumps_with(const std::vector<double>& levels, const std::vector<doub
   return median_of(apart) > (1.0 + 2.0 * error) * median_of(same);
 }
 
-inline double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum,
-                       const std::vector<double>& levels, const std::vector<double>& measured,
-                       const MostNoise& most) {
-  return noise_of_sequence(sequence, gaps, quantum, levels, measured, most).sd;
+/// Of each sample, how many before it follow on each other. @param starts  samples that follow on none
+inline std::vector<int> since_start(const std::vector<bool>& starts) {
+  std::vector<int> since(starts.size(), 0);
+  for (std::size_t i = 1; i < starts.size(); ++i) since[i] = starts[i] ? 0 : since[i - 1] + 1;
+  return since;
 }
 
+/// The noise in a residual: white, coloured up to an AR(1) of 0.97, with heavy tails, other in other parts of the sequence; without
+/// what a wrong model leaves.
+///
+/// A variogram of differences, each scaled by its block's own robust scale, is fitted by non-negative least squares as
+/// a sum of noise (white, AR(1) of 0.5 to 0.97) and of what is none (smooth errors, slow ones); see
+/// @ref NoiseThresholds. Cressie, Statistics for Spatial Data (1993), sections 2.4 and 2.6.
+///
+/// Of the sums that explain the variogram as well (NoiseThresholds::as_likely), the one with the most noise says how large the
+/// residual may be by chance. Its mean square over so few samples may be larger the longer it remembers (one-sided 99.5 %).
+/// White noise knows itself; a few hundred samples of noise that remembers twenty know it to a third.
+/// @param sequence  residuals in order
+/// @param gaps      as long; `gaps[i]` true: entry i does not follow on entry i-1
+/// @param quantum   of the measured channel, 0 where it has none; a rounded channel has at least the noise of rounding
+/// @param levels    as long, or empty: of what the error of a model jumps with; samples at levels farther apart than
+///                  NoiseThresholds::same_level tell nothing of each other, those at the same level do across the jumps
+/// @param measured  as long, or empty: what was measured, where the simulation has no noise of its own; what noise there is
+///                  is in it, too, and where it is smooth there is little
+/// @param most      of noise that remembers; white noise is as large as the residual says
 inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
-                                       double quantum, const std::vector<double>& levels,
-                                       const std::vector<double>& measured, const MostNoise& most) {
+                                       double quantum = 0.0, const std::vector<double>& levels = {},
+                                       const std::vector<double>& measured = {}, const MostNoise& most = {}) {
   constexpr NoiseThresholds limit;
   const std::size_t count = sequence.size();
   if (count < limit.least_pairs) return {};
-  std::vector<int> since_gap(count, 0);
-  int longest = 0;
-  for (std::size_t i = 1; i < count; ++i) {
-    since_gap[i] = gaps[i] ? 0 : since_gap[i - 1] + 1;
-    longest = std::max(longest, since_gap[i]);
-  }
+  std::vector<int> since_gap = since_start(gaps);
+  const int longest = *std::max_element(since_gap.begin(), since_gap.end());
   const bool jumps = jumps_with(levels, sequence, since_gap);
   const auto alike = [&](std::size_t i, std::size_t k) { return !jumps || are_alike(levels, i, k); };
   // Each block in units of its own scale; the mean square of the scales brings the units back.
   const std::size_t blocks = std::max<std::size_t>(1, count / limit.block);
-  std::vector<double> scaled = sequence, measured_scaled = measured, steps;
-  double squares = 0.0;
+  const auto begin_of = [&](std::size_t block) { return block * count / blocks; };
   std::vector<double> scales(blocks, 0.0);
   for (std::size_t b = 0; b < blocks; ++b) {
-    steps.clear();
-    for (std::size_t i = b * count / blocks + 1; i < (b + 1) * count / blocks; ++i)
+    std::vector<double> steps;
+    for (std::size_t i = begin_of(b) + 1; i < begin_of(b + 1); ++i)
       if (since_gap[i] > 0 && alike(i, i - 1)) steps.push_back(std::abs(sequence[i] - sequence[i - 1]));
     scales[b] = median_of(steps);
   }
   // In coarse steps most neighbours read nearly the same and some a step more: the median tells nothing of those, and no block
   // has a smaller scale than a step.
   std::vector<double> typical = scales;
-  const double usual = quantile_of(typical, 0.5);
+  const double usual = median_of(typical);
+  std::vector<double> scaled = sequence, measured_scaled = measured;
+  std::vector<bool> starts = gaps;
+  double squares = 0.0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const double scale = std::max(scales[b] > 0.0 ? scales[b] : usual, quantum);
     if (!(scale > 0.0)) continue;
-    const std::size_t from = b * count / blocks, to = (b + 1) * count / blocks;
+    const std::size_t from = begin_of(b), to = begin_of(b + 1);
     for (std::size_t i = from; i < to; ++i) scaled[i] /= scale;
     for (std::size_t i = from; i < to && !measured.empty(); ++i) measured_scaled[i] /= scale;
     squares += scale * scale * static_cast<double>(to - from) / static_cast<double>(count);
-    if (from > 0) since_gap[from] = -1;  // in other units than what comes before
+    starts[from] = true;  // in other units than what comes before
   }
-  for (std::size_t i = 1; i < count; ++i)
-    if (since_gap[i] < 0) since_gap[i] = 0;
-    else if (!gaps[i]) since_gap[i] = since_gap[i - 1] + 1;
+  since_gap = since_start(starts);
   double mean_square = 0.0;
   for (const double value : sequence) mean_square += value * value / static_cast<double>(count);
   const double rounding = std::min(quantum / std::sqrt(12.0), std::sqrt(mean_square));
   if (!(squares > 0.0)) return {std::sqrt(mean_square), std::sqrt(mean_square)};
   std::vector<double> lags, variogram, weights;
   for (const int lag : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
-    if (lag > std::max(longest / 2, 1) || lag > limit.longest_lag) break;
+    if (lag > std::max(longest / 2, 1)) break;
     std::size_t pairs = 0;
     const double value =
         half_mean_square(scaled, since_gap, lag, limit.quanta * quantum / std::sqrt(squares), pairs, alike);
@@ -327,8 +313,8 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
     weights.push_back(1.0 / (limit.known_shape * limit.known_shape + 2.0 / independent));
   }
   if (lags.empty()) return {std::sqrt(mean_square), std::sqrt(mean_square)};
-  // What most third differences of what was measured are below bounds the noise, and what one of five of the error is below is
-  // noise wherever the error of a model is smooth.
+  // Twice the usual third difference of the measurement bounds the noise. The least fifth of those of the error are noise
+  // wherever the error of a model is smooth.
   std::vector<int> since_jump = since_gap;
   for (std::size_t i = 1; i < count && jumps; ++i)
     since_jump[i] = are_alike(levels, i, i - 1) ? std::min(since_gap[i], since_jump[i - 1] + 1) : 0;
@@ -348,6 +334,13 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
       limit.standard_errors * std::sqrt((noise.squares_alike - 1.0) / (2.0 * static_cast<double>(count)));
   return {std::max(std::sqrt(variance), rounding),
           std::max(std::sqrt(noise.most * squares) * (1.0 + by_chance), rounding)};
+}
+
+/// The standard deviation alone, as noise_of_sequence() has it.
+inline double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps,
+                       double quantum = 0.0, const std::vector<double>& levels = {},
+                       const std::vector<double>& measured = {}, const MostNoise& most = {}) {
+  return noise_of_sequence(sequence, gaps, quantum, levels, measured, most).sd;
 }
 
 /// How many samples in a row count as one: 1 + 2 sum of the autocorrelations, up to their first fall below

@@ -29,7 +29,7 @@ namespace thermopower::gap::engine {
 /// A recording as every stage of a diagnosis uses it: validated and checked once, when it is made.
 ///
 /// Samples that are not to be believed are missing; inputs have no holes; where time passed unrecorded or an input
-/// was not known the run is cut, and the rows in between are left out. What was done stands in `findings`.
+/// was not known the run is cut, and the rows in between are left out. `findings` says so.
 class PreparedRecording {
 public:
   /// @param model       says which columns are inputs, and which outputs are judged
@@ -38,7 +38,7 @@ public:
   /// @throws InvalidInput where the recording is invalid (Recording::validate())
   PreparedRecording(const Model& model, const Recording& recorded, bool as_recorded = false);
 
-  /// What is believed: all rows lie in a run.
+  /// The believed samples; all rows lie in a run.
   const Recording& recording() const { return believed_; }
   /// The same as the rollouts of the model take it.
   const Inputs& inputs() const { return inputs_; }
@@ -46,7 +46,7 @@ public:
   Recording take_recording() && { return std::move(believed_); }
   /// Gives away inputs().
   Inputs take_inputs() && { return std::move(inputs_); }
-  /// What was found, in a fixed order: stamps, then column by column.
+  /// All findings, in a fixed order: stamps, then column by column.
   const std::vector<Finding>& findings() const { return findings_; }
   /// For each row of recording() its row in the whole recording as it was given.
   const std::vector<Eigen::Index>& source_rows() const { return source_rows_; }
@@ -142,9 +142,21 @@ private:
 
 /// Bounds of what a temperature of, or near, a motor can be, in degC.
 struct PossibleTemperature {
-  double low_C = -60.0;   ///< colder than any place a motor is run in
-  double high_C = 500.0;  ///< hotter than any insulation stands
+  static constexpr double low_C = -60.0;   ///< colder than any place a motor is run in
+  static constexpr double high_C = 500.0;  ///< hotter than any insulation stands
+
+  /// Whether a temperature is possible.
+  static bool holds(double value_C) { return value_C > low_C && value_C < high_C; }
+  /// Whether it is beyond a bound; a missing one is not.
+  static bool is_beyond(double value_C) { return value_C < low_C || value_C > high_C; }
 };
+
+/// Rows that are set in either mask.
+inline RowMask either(RowMask one, const RowMask& other) {
+  assert(one.size() == other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) one[i] = one[i] != 0 || other[i] != 0 ? 1 : 0;
+  return one;
+}
 
 inline PreparedRecording::PreparedRecording(const Model& model, const Recording& recorded, bool as_recorded)
     : believed_(recorded),
@@ -177,14 +189,11 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   fill_inputs(model, recorded, list);
   if (moves_) mark_under_way(believed_);
   interval_s_ = plant::median_interval_s(believed_.t_s, believed_.spans(), 0.0);
+  findings_ = list.take();
   if (as_recorded) {
-    std::vector<Finding> all = list.take();
-    for (Finding& one : all) one.action = FindingAction::none;
-    findings_ = std::move(all);
+    for (Finding& one : findings_) one.action = FindingAction::none;
     believed_ = recorded;
     unknown_.assign(unknown_.size(), 0);
-  } else {
-    findings_ = list.take();
   }
   keep_known_rows();
   renew_inputs(model);
@@ -268,12 +277,11 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
     defaults.push_back(value);
   }
   RowMask lost = lost_frames(lost_in, defaults, believed_.runs);
-  for (std::size_t i = 0; i < lost.size(); ++i) {
-    const auto is_taken = [&](const Column* one) {
-      return !std::isfinite(one->values[static_cast<Eigen::Index>(i)]);
-    };
-    if (std::all_of(lossy.begin(), lossy.end(), is_taken)) lost[i] = 0;
-  }
+  for (std::size_t i = 0; i < lost.size(); ++i)
+    if (std::none_of(lossy.begin(), lossy.end(), [at = static_cast<Eigen::Index>(i)](const Column* one) {
+          return std::isfinite(one->values[at]);
+        }))
+      lost[i] = 0;
   list.add_rows(FindingKind::glitched_samples, Severity::warning, "", lost, FindingAction::masked,
                 "read what the sensors read when they say nothing", "look at what reads the sensors");
   for (Column* column : lossy) take_away(column->values, lost);
@@ -293,6 +301,11 @@ inline void PreparedRecording::find_starts(FindingList& list) {
 inline void PreparedRecording::mask_output(const Recording& recorded, const std::string& name,
                                            Eigen::VectorXd& values, FindingList& list) {
   const std::vector<RunSpan>& runs = believed_.runs;
+  const auto mask = [&](FindingKind kind, const RowMask& rows, const char* words, const char* mend = "") {
+    take_away(values, rows);
+    const Severity severity = kind == FindingKind::spiked_samples ? Severity::note : Severity::warning;
+    list.add_rows(kind, severity, name, rows, FindingAction::masked, words, mend);
+  };
   const Eigen::Index present = recorded.find(name)->array().isFinite().count();
   if (present < recorded.rows()) {
     constexpr double many = 0.2;
@@ -302,25 +315,17 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
                  " samples are missing (" + short_number(100.0 * share) + " %)");
   }
   if (is_temperature(name)) {
-    std::vector<double> list_of = finite_samples(values);
-    const double typical = median_of(list_of);
-    constexpr PossibleTemperature possible;
-    RowMask mask(unknown_.size(), 0);
-    for (Eigen::Index i = 0; i < values.size(); ++i)
-      if (typical > possible.low_C && typical < possible.high_C &&
-          (values[i] < possible.low_C || values[i] > possible.high_C))
-        mask[static_cast<std::size_t>(i)] = 1;
-    mask = by(Rule::impossible, std::move(mask));
-    take_away(values, mask);
-    list.add_rows(FindingKind::impossible_samples, Severity::warning, name, mask, FindingAction::masked,
-                  "are no temperature of a motor", "look at the thermometer's wiring");
+    std::vector<double> samples = finite_samples(values);
+    RowMask impossible(unknown_.size(), 0);
+    if (PossibleTemperature::holds(median_of(samples)))
+      for (Eigen::Index i = 0; i < values.size(); ++i)
+        impossible[static_cast<std::size_t>(i)] = PossibleTemperature::is_beyond(values[i]) ? 1 : 0;
+    mask(FindingKind::impossible_samples, by(Rule::impossible, std::move(impossible)),
+         "are no temperature of a motor", "look at the thermometer's wiring");
   }
   if (name == "angle_deg") {
     Eigen::VectorXd whole = unwrapped(values, runs);
-    Eigen::Index turned = 0;
-    for (Eigen::Index i = 0; i < values.size(); ++i)
-      turned += std::isfinite(values[i]) && whole[i] != values[i] ? 1 : 0;
-    if (turned > 0) {
+    if ((values.array().isFinite() && whole.array() != values.array()).any()) {
       list.add(FindingKind::wrapped_angle, Severity::note, name,
                "starts anew after each turn; it is unwrapped");
       values = std::move(whole);
@@ -333,46 +338,34 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   if (name == "angle_deg") traits.at_rest = believed_.find("rate_dps");
   if (name == "rate_dps") traits.integral = believed_.find("angle_deg");
   const Eigen::VectorXd* power = name == "current_A" ? believed_.find("power_param") : nullptr;
-  const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power, runs) : runs;
   traits.begins_with_a_step = power != nullptr;
+  const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power, runs) : runs;
   SampleMasks masks(values, steady, traits);
   if (power != nullptr) {
     const RowMask lost = lost_current(values, *power, masks.scale());
-    take_away(values, lost);
     masks.take(lost);
-    list.add_rows(FindingKind::glitched_samples, Severity::warning, name, lost, FindingAction::masked,
-                  "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
+    mask(FindingKind::glitched_samples, lost, "are 0 where current flows at that power otherwise",
+         "look at the current sensor's bus");
   }
   const RowMask spikes = masks.spikes(), bursts = masks.bursts();
-  take_away(values, spikes);
-  list.add_rows(FindingKind::spiked_samples, Severity::note, name, spikes, FindingAction::masked,
-                "lie far from all around them");
-  take_away(values, bursts);
-  list.add_rows(FindingKind::glitched_samples, Severity::warning, name, bursts, FindingAction::masked,
-                "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
+  mask(FindingKind::spiked_samples, spikes, "lie far from all around them");
+  mask(FindingKind::glitched_samples, bursts, "jump away and back",
+       "look at what reads the sensor (a default reading, a word that wraps)");
   traits.begins_with_a_step = false;
-  {
-    SampleMasks still(values, runs, traits);
-    // First: all but the first sample of a clipped stretch look frozen.
-    const RowMask clipped = still.clipped();
-    take_away(values, clipped);
-    list.add_rows(FindingKind::clipped_samples, Severity::warning, name, clipped, FindingAction::masked,
-                  "stand at the end of the sensor's range", "use a sensor with a wider range");
-    // A current that stands more often than it moves is what somebody set: as what heats, it is held.
-    constexpr double mostly = 0.5;
-    const bool is_set = name == "current_A" && !electrical_ && still.equal_share() > mostly;
-    const RowMask frozen = is_set ? RowMask(unknown_.size(), 0) : still.frozen();
-    take_away(values, frozen);
-    list.add_rows(FindingKind::frozen_samples, Severity::warning, name, frozen, FindingAction::masked,
-                  "repeat the value before them where noise or motion would show",
-                  "look at what reads the sensor");
-    if (name == "current_A" && drives_by_current_) {
-      untold_current_ = clipped;
-      add_to(untold_current_, frozen);
-    }
-    if (still.equal_share() > 0.999999 && present > 20)
-      list.add(FindingKind::constant_column, Severity::note, name, "never changes");
-  }
+  SampleMasks still(values, runs, traits);
+  // First: all but the first sample of a clipped stretch look frozen.
+  const RowMask clipped = still.clipped();
+  mask(FindingKind::clipped_samples, clipped, "stand at the end of the sensor's range",
+       "use a sensor with a wider range");
+  // A current that stands more often than it moves is what somebody set: as what heats, it is held.
+  constexpr double mostly = 0.5;
+  const bool is_set = name == "current_A" && !electrical_ && still.equal_share() > mostly;
+  const RowMask frozen = is_set ? RowMask(unknown_.size(), 0) : still.frozen();
+  mask(FindingKind::frozen_samples, frozen, "repeat the value before them where noise or motion would show",
+       "look at what reads the sensor");
+  if (name == "current_A" && drives_by_current_) untold_current_ = either(clipped, frozen);
+  if (still.equal_share() > 0.999999 && present > 20)
+    list.add(FindingKind::constant_column, Severity::note, name, "never changes");
   const double quantum = quantum_of(values);
   std::vector<double> steps = step_sizes(values, runs);
   if (quantum > 0.0 && median_of(steps) < 1.5 * quantum && quantum > 1e-6)
@@ -386,16 +379,12 @@ inline void PreparedRecording::mask_slow_input(const std::string& name, Eigen::V
   ColumnTraits traits;
   traits.cannot_jump = name != "supply_V";  // a supply gives way to the load
   SampleMasks masks(values, believed_.runs, traits);
-  RowMask mask = masks.spikes();
-  add_to(mask, masks.bursts());
-  const Eigen::VectorXd* power = name == "supply_V" ? believed_.find("power_param") : nullptr;
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i] == 0 || power == nullptr) continue;
-    const auto row = static_cast<Eigen::Index>(i);  // a step of the load may show for a row
-    if ((row > 0 && (*power)[row] != (*power)[row - 1]) ||
-        (row + 1 < power->size() && (*power)[row] != (*power)[row + 1]))
-      mask[i] = 0;
-  }
+  const RowMask spikes = masks.spikes();
+  RowMask mask = either(spikes, masks.bursts());
+  if (const Eigen::VectorXd* power = name == "supply_V" ? believed_.find("power_param") : nullptr)
+    for (Eigen::Index row = 1; row < power->size(); ++row)
+      if ((*power)[row] != (*power)[row - 1])  // a step of the load may show for a row
+        mask[static_cast<std::size_t>(row)] = mask[static_cast<std::size_t>(row) - 1] = 0;
   take_away(values, mask);
   list.add_rows(FindingKind::spiked_samples, Severity::note, name, mask, FindingAction::masked,
                 "lie far from all around them");
@@ -431,7 +420,7 @@ inline void PreparedRecording::fill_inputs(const Model& model, const Recording& 
       believed_.remove(input.name);  // a run without a sample
       continue;
     }
-    add_to(unknown_, mask);
+    unknown_ = either(std::move(unknown_), mask);
     list.add_rows(FindingKind::unknown_input, Severity::note, input.name, mask, FindingAction::segmented,
                   "are missing between values that differ; their rows are not judged",
                   "log the inputs at every row");

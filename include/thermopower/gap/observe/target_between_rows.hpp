@@ -16,13 +16,12 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <utility>
 #include <vector>
 
 /// @file target_between_rows.hpp
-/// What a servo's target did between the rows. Nobody recorded the servo's command: it is made of the target and of the motion
-/// that was measured, and where that turns within a few rows, slopes from row to row are not its rate at the rows. What the
-/// command is off by goes as its steps do and looks like part of the next target, though every target held. The simulation
+/// A servo's target between the rows. Nobody recorded the servo's command: it is made of the target and of the motion
+/// that was measured, and where that turns within a few rows, slopes from row to row are not its rate at the rows. The
+/// command's error goes as its steps do and looks like part of the next target, though every target held. The simulation
 /// under test says how much of that there is: with targets that hold, and with targets that move, its motion is looked at
 /// through the same rows, and the recorded one is placed between the two.
 
@@ -41,8 +40,6 @@ struct TargetThresholds {
 /// Asks the motion of axes behind a servo what its target did.
 class TargetBetweenRows {
 public:
-  using Share = CommandBetweenRows::Share;  ///< part of the way to the next row's value, with its error
-
   /// Keeps references to both: they must outlive this object.
   TargetBetweenRows(const Model& model, const Catalogue& catalogue)
       : model_(model), catalogue_(catalogue), gains_(plant::servo_gains(model)) {}
@@ -53,38 +50,36 @@ public:
   /// How much of a target's next step the servo is given before it is logged, where the target went on between the rows; nothing
   /// where it held, or where nobody knows. An axis that follows a smooth target closely moves as that steps: then
   /// nobody can tell it from damping; nor where the simulation runs away.
-  std::optional<Share> steady() const {
-    constexpr double agree = 3.0;  // standard errors
+  std::optional<Estimate> steady() const {
+    constexpr double agree = 3.0, least = TargetThresholds().least_share;  // standard errors
     const std::optional<Seen> seen = seen_in(recordings_, false);
     if (!seen) return std::nullopt;
-    const std::optional<Share> sure = CommandBetweenRows::sure_of({seen->share.value, seen->share.error});
+    const std::optional<Estimate> sure = sure_of(seen->share);
     if (!sure || !(sure->value > 0.0)) return std::nullopt;
-    const std::optional<Share> plain = placed(*seen, false);
-    if (!plain) return std::nullopt;
-    const auto steady = CommandBetweenRows::steady_share(
-        CommandBetweenRows::sure_of({plain->value, plain->error}), TargetThresholds().least_share);
+    const std::optional<Estimate> plain = placed(*seen, false);
+    const auto steady = plain ? steady_share(sure_of(*plain), least) : std::nullopt;
     if (!steady) return std::nullopt;
-    // What the drive takes of its command falls with that as the target is followed, and passes for a part of the next step.
+    // The part of its command that a drive takes falls with that as the target is followed, and passes for a part of the next step.
     const std::optional<Seen> seen_beside = seen_in(recordings_, true);
-    const std::optional<Share> beside = seen_beside ? placed(*seen_beside, true) : std::nullopt;
-    const bool was_that = beside && beside->value < TargetThresholds().least_share &&
+    const std::optional<Estimate> beside = seen_beside ? placed(*seen_beside, true) : std::nullopt;
+    const bool was_that = beside && beside->value < least &&
                           plain->value - beside->value > agree * std::hypot(plain->error, beside->error);
     return was_that ? std::nullopt : steady;
   }
 
 private:
-  /// What a regression of the motion on the servo's command and on what it makes of the target's next step sees.
+  /// Result of a regression of the motion on the servo's command and on the command that the target's next step makes.
   struct Seen {
     double response = 0.0;  ///< of the axis to the command, deg/s^2 for each A
-    Share share;            ///< of the next step
+    Estimate share;         ///< of the next step
   };
 
-  /// How much of a target's next step the servo is given before it is logged, by what was seen; nothing where nobody knows.
+  /// How much of a target's next step the servo is given before it is logged: where what was seen lies between what is seen in
+  /// simulations of targets that hold and of targets that move. Nothing where nobody knows.
   /// @param bent  whether it was seen beside what the drive may bend its command by
-  std::optional<Share> placed(const Seen& seen, bool bent) const {
+  std::optional<Estimate> placed(const Seen& seen, bool bent) const {
     constexpr TargetThresholds limit;
-    // What slopes are off by goes with the loop's gain, and constants are known roughly: what a regression tells of them is
-    // torque by inertia.
+    // The error of slopes goes with the loop's gain, and constants are known roughly. The regression tells torque by inertia.
     Model like = model_;
     std::optional<Seen> holding = seen_in_simulation(like, 0.0, bent);
     for (int round = 0; holding && round < limit.adjustments; ++round) {
@@ -95,9 +90,16 @@ private:
       holding = seen_in_simulation(like, 0.0, bent);
     }
     if (!holding) return std::nullopt;
-    const double moves = share_of_moving();
+    // More moves where a servo takes one target a row: it feels only one that is ahead of what was logged.
+    double moves = limit.of_moving;
+    for (const Inputs* one : recordings_) moves = std::max(moves, share_of_samples(*one));
     const std::optional<Seen> moving = seen_in_simulation(like, moves, bent);
-    return moving ? between(seen.share, holding->share, moving->share, moves) : std::nullopt;
+    const double apart = moving ? moving->share.value - holding->share.value : 0.0;
+    if (!(apart > 0.0)) return std::nullopt;
+    const double scale = moves / apart;
+    return Estimate{
+        scale * (seen.share.value - holding->share.value),
+        scale * std::hypot(seen.share.error, std::max(holding->share.error, moving->share.error))};
   }
 
   std::optional<Seen> seen_in(const std::vector<const Inputs*>& recordings, bool bent) const {
@@ -108,10 +110,10 @@ private:
     const std::optional<MotionFit> fit =
         motion.fit([&](const Inputs& inputs, const Eigen::VectorXd& servo_A, const RunSpan& run,
                        Eigen::Index k) { return terms(inputs, servo_A, drive, run, k); });
-    if (!fit || !CommandBetweenRows::is_followed(*fit, motion.noise(Signal::rate_dps))) return std::nullopt;
-    const auto [value, error] = fit->estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; });
-    if (!(error < CommandThresholds().precise)) return std::nullopt;
-    return Seen{fit->value[0], {value, error}};
+    if (!fit || !is_followed(*fit, motion.noise(Signal::rate_dps))) return std::nullopt;
+    const Estimate share = fit->second_by_first();
+    if (!(share.error < CommandThresholds().precise)) return std::nullopt;
+    return Seen{fit->value[0], share};
   }
 
   MotionRegression::Terms terms(const Inputs& inputs, const Eigen::VectorXd& servo_A,
@@ -133,7 +135,6 @@ private:
   /// @param moves  share of the next step that its servo is given; 0 of targets that hold
   std::optional<Seen> seen_in_simulation(const Model& model, double moves, bool bent) const {
     std::vector<Inputs> simulated;
-    simulated.reserve(recordings_.size());
     for (const Inputs* one : recordings_) simulated.push_back(simulation_of(model, *one, moves));
     std::vector<const Inputs*> list;
     for (const Inputs& one : simulated) list.push_back(&one);
@@ -153,8 +154,10 @@ private:
     Inputs result = recorded;
     const std::array<Signal, 2> signals{Signal::angle_deg,
                                         Signal::rate_dps};  // as segments of an axis have them
-    for (const Signal signal : signals)
-      if (result.judged(signal)) measured(result, signal).setConstant(missing);
+    const auto measured = [&result](Signal signal) -> Eigen::VectorXd& {
+      return result.measured[static_cast<std::size_t>(signal)];
+    };
+    for (const Signal signal : signals) measured(signal).setConstant(missing);
     Readings readings;
     for (const Segment& segment : segments) {
       if (!segment.axis) continue;
@@ -163,39 +166,17 @@ private:
         if (!recorded.judged(signals[i])) continue;
         for (Eigen::Index row = segment.begin; row < segment.end; ++row)
           if (std::isfinite(recorded.of(signals[i])[row]))
-            measured(result, signals[i])[row] = readings.value(row, static_cast<int>(i));
+            measured(signals[i])[row] = readings.value(row, static_cast<int>(i));
       }
     }
     close_loop(model, result);
     return result;
   }
 
-  static Eigen::VectorXd& measured(Inputs& inputs, Signal signal) {
-    return inputs.measured[static_cast<std::size_t>(signal)];
-  }
-
   /// Share of the next step that the servo is given of targets that go straight from row to row.
   double share_of_samples(const Inputs& inputs) const {
     return plant::moving_target_share(gains_.period_s,
                                       plant::median_interval_s(inputs.t_s, inputs.runs, 0.0));
-  }
-
-  /// The same in the simulations with targets that move; more where a servo takes one a row: it feels only a target that is
-  /// ahead of what was logged.
-  double share_of_moving() const {
-    double most = TargetThresholds().of_moving;
-    for (const Inputs* one : recordings_) most = std::max(most, share_of_samples(*one));
-    return most;
-  }
-
-  /// Where a share that was seen lies between those that are seen of targets that hold and of some that move.
-  static std::optional<Share> between(const Share& seen, const Share& holding, const Share& moving,
-                                      double moves) {
-    const double apart = moving.value - holding.value;
-    if (!(apart > 0.0)) return std::nullopt;
-    const double scale = moves / apart;
-    return Share{scale * (seen.value - holding.value),
-                 scale * std::hypot(seen.error, std::max(holding.error, moving.error))};
   }
 
   const Model& model_;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
-#include <thermopower/gap/units/common_factor.hpp>
 #include <thermopower/gap/units/posterior.hpp>
 
 #include <algorithm>
@@ -87,11 +86,7 @@ public:
     });
     choose();
     for (std::size_t i = 0; i < parts_.size(); ++i) report(i, findings);
-    if (!is_as_expected()) return;
-    const UnitPosterior posterior(evidence_, most_power_);
-    report_common_factor(
-        evidence_, [&](UnitMeasure kind) { return posterior.shift(kind, chosen_); },
-        parts_.front().from->recording().name, findings);
+    if (is_as_expected()) report_common_factor(findings);
   }
 
   /// Whether all parts are as expected; after find().
@@ -124,7 +119,7 @@ private:
                                : cools ? UnitMeasure::heating
                                        : UnitMeasure::current;
       const double factor = cools ? limit.near_heat : limit.near_motion;
-      // What warms with the heat is neither air nor a supply.
+      // A column that warms with the heat is neither air nor a supply.
       if (first == nullptr || second == nullptr || evidence.is_near(told, factor) ||
           (pair.first == "motor_C" && evidence[UnitMeasure::heating].is_told()))
         continue;
@@ -191,14 +186,9 @@ private:
       report_impossible(first, findings);
       return;
     }
-    Finding said{unit.kind(),
-                 severity(unit.column()),
-                 part.from->recording().name,
-                 unit.column(),
-                 unit.words(),
-                 unit.mend(),
-                 FindingAction::none,
-                 {}};
+    Finding said{
+        unit.kind(), severity(unit.column()), part.from->recording().name, unit.column(), unit.words(),
+        unit.mend()};
     std::string runs;
     std::size_t of_recording = 0, alike = 0, possible = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -271,16 +261,65 @@ private:
       const UnitEvidence& of = evidence_[part];
       const TemperatureRange& range = column == "motor_C" ? of.motor : of.air;
       if (!range.is_known() || !range.is_odd()) continue;
-      findings.push_back({FindingKind::impossible_samples,
-                          severity(column),
-                          parts_[part].from->recording().name,
-                          column,
+      findings.push_back({FindingKind::impossible_samples, severity(column),
+                          parts_[part].from->recording().name, column,
                           "is about " + short_number(range.typical) + ": no temperature of " +
                               (column == "motor_C" ? "a motor" : "air") + " in degrees Celsius",
-                          "look at its unit, and at what --column makes of it",
-                          FindingAction::none,
-                          {}});
+                          "look at its unit, and at what --column makes of it"});
     }
+  }
+
+  /// Constants that are off where no unit is wrong. Warns where one factor, or one that no constant has, explains what several
+  /// constants would have to.
+  void report_common_factor(std::vector<Finding>& findings) const {
+    constexpr UnitThresholds limit;
+    constexpr double alike = 1.08;  // factor that two constants may differ by
+    constexpr double well = 0.15;   // deviation of one that tells a factor
+    const UnitPosterior posterior(evidence_, most_power_);
+    const auto shift = [&](UnitMeasure kind) { return posterior.shift(kind, chosen_); };
+    const auto is_told = [&](UnitMeasure kind) {
+      return std::any_of(evidence_.begin(), evidence_.end(),
+                         [&](const UnitEvidence& one) { return one[kind].is_told() && one[kind].sd < well; });
+    };
+    const auto is = [&](UnitMeasure kind, double log_factor) {
+      return is_told(kind) && std::abs(shift(kind) - log_factor) < std::log(alike);
+    };
+    const auto add = [&](FindingKind kind, const std::string& column, const std::string& message,
+                         const char* mend) {
+      findings.push_back(
+          {kind, Severity::warning, parts_.front().from->recording().name, column, message, mend});
+    };
+    const double drive = shift(UnitMeasure::drive), slope = shift(UnitMeasure::slope);
+    const std::string moves = short_number(std::exp(drive)), faster = short_number(std::exp(slope));
+    const std::string command = evidence_.front().has("voltage_V") ? "voltage_V" : "drive_A";
+    const bool is_off = std::abs(drive) > std::log(limit.common) && is_told(UnitMeasure::drive);
+    if (is_off && is(UnitMeasure::drag, drive) &&
+        (!is_told(UnitMeasure::slope) || is(UnitMeasure::slope, 0.0)))
+      add(FindingKind::common_factor, command,
+          "moves the axis " + moves +
+              " times as much as the model says, against inertia and drag alike: one factor, such as "
+              "a unit, a gear, a supply or torque_constant_Nm_per_A",
+          "look at the unit of the command, the gear ratio and the supply");
+    else if (is_off && is(UnitMeasure::slope, -drive) && is(UnitMeasure::drag, 0.0))
+      add(FindingKind::common_factor, "t_s",
+          "runs " + faster +
+              " times too fast, or angle_deg is in another unit: one factor explains both that rate_dps is " +
+              faster + " times the slope of angle_deg and that the command moves the axis " + moves +
+              " times as much as the model says",
+          "look at the clock that stamps the rows");
+    else if (std::abs(drive) > std::log(limit.farthest))
+      add(FindingKind::wrong_unit, command,
+          "moves the axis " + moves +
+              " times as much as the model says: the model's inertia_kgm2 or "
+              "torque_constant_Nm_per_A is off by more than constants are",
+          "look at the unit of the command and at the model's constants");
+    const double heating = shift(UnitMeasure::heating), cooling = shift(UnitMeasure::cooling);
+    if (std::min(std::abs(heating), std::abs(cooling)) > std::log(limit.farthest))
+      add(FindingKind::wrong_unit, "t_s",
+          "or the model's heat_capacity_J_per_K is off by more than constants are: the motor warms " +
+              short_number(std::exp(heating)) + " times as fast as the model's, and cools " +
+              short_number(std::exp(cooling)) + " times as fast",
+          "look at the clock's unit and at the model's constants");
   }
 
   const Model& model_;

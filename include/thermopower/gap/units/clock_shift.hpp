@@ -24,14 +24,6 @@ struct ClockShiftThresholds {
   double current_left = 0.6;           ///< of the current's variance that the right shift leaves
 };
 
-/// Rows of a column moved to later rows by `shift` (to earlier ones where negative), ends repeated.
-inline Eigen::VectorXd shifted(const Eigen::VectorXd& values, Eigen::Index shift) {
-  Eigen::VectorXd result(values.size());
-  for (Eigen::Index i = 0; i < values.size(); ++i)
-    result[i] = values[std::clamp<Eigen::Index>(i - shift, 0, values.size() - 1)];
-  return result;
-}
-
 /// A current follows its voltage within a row: where another shift fits far better, the loggers' clocks differ.
 inline void check_current_clock(const Model& model, const PreparedRecording& prepared,
                                 const Catalogue& catalogue, FindingList& list) {

@@ -9,7 +9,6 @@
 #include <thermopower/plant/samples.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <string>
 #include <variant>
@@ -37,19 +36,12 @@ struct DetachedSensorThresholds {
   std::size_t least_rows = 20;  ///< samples
 };
 
-/// Rise that heat causes in one body, row by row, every run from the air on.
-inline Eigen::VectorXd heated_rise(const Inputs& inputs, const Eigen::VectorXd& heat_W,
-                                   double capacity_J_per_K, double conductance_W_per_K) {
-  assert(heat_W.size() == inputs.rows() && capacity_J_per_K > 0.0);
-  Eigen::VectorXd rise = Eigen::VectorXd::Zero(heat_W.size());
-  for (const RunSpan& run : inputs.runs)
-    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
-      const double step_s = inputs.t_s[i] - inputs.t_s[i - 1];
-      const double stays = std::exp(-step_s * conductance_W_per_K / capacity_J_per_K);
-      const double heat = std::isfinite(heat_W[i - 1]) ? heat_W[i - 1] : 0.0;
-      rise[i] = stays * rise[i - 1] + (1.0 - stays) * heat / conductance_W_per_K;
-    }
-  return rise;
+/// The widest the readings of a sensor lie apart; 0 without any.
+inline double range_of(const Eigen::VectorXd& values) {
+  const std::vector<double> read = finite_samples(values);
+  if (read.empty()) return 0.0;
+  const auto [low, high] = std::minmax_element(read.begin(), read.end());
+  return *high - *low;
 }
 
 /// Adds a finding where motor_C does not follow the power: it never changes, or it only follows the air.
@@ -64,10 +56,15 @@ inline void check_thermometer(const Model& model, const PreparedRecording& prepa
   if (samples.size() < limit.least_rows) return;
   const Eigen::VectorXd heat_W =
       plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs)).heat_W;
-  const double capacity = body->heat_capacity_J_per_K, conductance = body->conductance_W_per_K;
-  const double warms_K = heated_rise(inputs, heat_W, capacity, conductance).maxCoeff();
+  const double time_constant_s = body->heat_capacity_J_per_K / body->conductance_W_per_K;
+  const Eigen::VectorXd rise_K =
+      heat_W.array().isFinite().select(heat_W.array(), 0.0) / body->conductance_W_per_K;
+  const auto risen_K = [&](double slower) {  // of one body, every run from the air on
+    return plant::lagged(rise_K, slower * time_constant_s, true, inputs.t_s, inputs.runs);
+  };
+  const double warms_K = risen_K(1.0).maxCoeff();
   if (!(warms_K > limit.least_K)) return;
-  if (quantile_of(samples, 0.0) == quantile_of(samples, 1.0)) {
+  if (range_of(motor) == 0.0) {
     list.add(FindingKind::frozen_samples, Severity::error, "motor_C",
              "never changes, where the model's goes through " + short_number(warms_K) +
                  " degC: a thermometer that stands still",
@@ -87,7 +84,7 @@ inline void check_thermometer(const Model& model, const PreparedRecording& prepa
       std::min(spread_K(differences), spread_K(samples)) > limit.share * warms_K)
     return;
   for (const double slower : {1.0 / limit.slowest, 1.0, limit.slowest}) {
-    const Eigen::VectorXd rise = heated_rise(inputs, heat_W, slower * capacity, conductance);
+    const Eigen::VectorXd rise = risen_K(slower);
     double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
     for (Eigen::Index i = 0; i < rise.size(); ++i) {
       if (!std::isfinite(above[i])) continue;
@@ -110,14 +107,6 @@ struct StillAxisThresholds {
   double moves = 20.0;  ///< times that range that the model's axis moves by, and at least a degree
   Eigen::Index least_rows = 50;  ///< of a recording: fewer say nothing
 };
-
-/// The widest the readings of a sensor lie apart; 0 without any.
-inline double range_of(const Eigen::VectorXd& values) {
-  const std::vector<double> read = finite_samples(values);
-  if (read.empty()) return 0.0;
-  const auto [low, high] = std::minmax_element(read.begin(), read.end());
-  return *high - *low;
-}
 
 /// How far a rigid axis would turn by a recorded drive, deg: what the model says, with its own friction and nothing else.
 inline double travel_deg(const Model& model, const Inputs& inputs) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/observe/heat_between_rows.hpp>
 #include <thermopower/gap/observe/prepared_recording.hpp>
 #include <thermopower/gap/units/windows.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
@@ -39,7 +40,7 @@ enum class UnitMeasure {
 /// How many there are.
 inline constexpr std::size_t unit_measure_count = 9;
 
-/// What a recording says of a measure.
+/// A measure as a recording tells it.
 struct Measured {
   double value = missing;      ///< measured by expected, without its sign; NaN: not told
   double sd = 0.1;             ///< standard deviation of its logarithm
@@ -119,12 +120,16 @@ struct UnitEvidence {
   }
 };
 
-/// The best that a regression of one column on others tells of the first of them, over all lengths of bells.
-inline ToldCoefficient best_told(const Inputs& inputs, const WindowColumns& of) {
+/// The best that a regression of one column on another, and on a constant where that is asked for, tells, over all lengths of bells.
+inline ToldCoefficient best_told(const Inputs& inputs, const Eigen::VectorXd& response,
+                                 const Eigen::VectorXd& term, bool beside_constant) {
+  WindowColumns of{Eigen::MatrixXd::Ones(response.size(), beside_constant ? 3 : 2)};
+  of.columns.col(0) = term;
+  of.columns.rightCols(1) = response;
   ToldCoefficient best;
   for_each_length(
       inputs.t_s, inputs.runs, [&](Eigen::Index) -> const WindowColumns& { return of; },
-      [&](const WindowSums& sums, Eigen::Index) {
+      [&](const WindowSums& sums) {
         const ToldCoefficient told = sums.all.solve().front();
         if (told.alike > best.alike) best = told;
       });
@@ -146,7 +151,7 @@ public:
     constexpr UnitThresholds limit;
     if (angle_.size() > 0 && rate_.size() > 0) {
       const ToldCoefficient slope =
-          regress(interval_means(rate_), interval_slopes(inputs_.t_s, angle_), false);
+          best_told(inputs_, interval_means(rate_), interval_slopes(inputs_.t_s, angle_), false);
       if (slope.alike > limit.same) to[UnitMeasure::slope].tell(slope.between(), 0.0);
     }
     if (inputs_.closed_loop) {
@@ -154,7 +159,7 @@ public:
       const Eigen::VectorXd& moved = of_angle ? angle_ : rate_;
       if (moved.size() > 0) {
         const ToldCoefficient target =
-            regress(of_angle ? inputs_.target_deg : inputs_.target_dps, moved, true);
+            best_told(inputs_, of_angle ? inputs_.target_deg : inputs_.target_dps, moved, true);
         if (target.alike > limit.alike)
           to[UnitMeasure::target].tell(target.between(), -std::log(target.alike));
       }
@@ -169,14 +174,6 @@ private:
     double forwards_nats =
         0.0;  // log likelihood that inertia, drag and friction are positive, against negative
   };
-
-  ToldCoefficient regress(const Eigen::VectorXd& response, const Eigen::VectorXd& term,
-                          bool beside_constant) const {
-    WindowColumns of{Eigen::MatrixXd::Ones(response.size(), beside_constant ? 3 : 2)};
-    of.columns.col(0) = term;
-    of.columns.rightCols(1) = response;
-    return best_told(inputs_, of);
-  }
 
   void tell_effort(UnitEvidence& to) {
     constexpr UnitThresholds limit;
@@ -214,7 +211,7 @@ private:
       if (columns.columns.size() == 0 || rate_.size() == 0) columns = effort_columns(length, late);
       return columns;
     };
-    for_each_length(inputs_.t_s, inputs_.runs, of, [&](const WindowSums& sums, Eigen::Index) {
+    for_each_length(inputs_.t_s, inputs_.runs, of, [&](const WindowSums& sums) {
       for (const WindowRegression* one : {&sums.moving, &sums.all}) {
         if (one->windows() < limit.windows) continue;
         const std::vector<ToldCoefficient> told = one->solve();
@@ -237,7 +234,6 @@ private:
 
   /// Acceleration, rate, direction, a constant, the angle with its sine and cosine, a torque from outside; the effort.
   WindowColumns effort_columns(Eigen::Index length, Eigen::Index late) const {
-    constexpr UnitThresholds limit;
     constexpr Eigen::Index part_of_bell = 8;
     constexpr double over_noise = 3.0, fast = 0.95;
     const Eigen::Index n = inputs_.rows(), around = std::max<Eigen::Index>(1, length / part_of_bell);
@@ -254,7 +250,7 @@ private:
         by_rate ? white_scale(inputs_.of(Signal::rate_dps), inputs_.runs)
                 : white_scale(inputs_.of(Signal::angle_deg), inputs_.runs) /
                       (plant::median_interval_s(inputs_.t_s, inputs_.runs) * static_cast<double>(around));
-    const double slow = std::max(limit.moving * quantile_of(speeds, fast), over_noise * noise);
+    const double slow = std::max(MotionThresholds().moving * quantile_of(speeds, fast), over_noise * noise);
     WindowColumns all{Eigen::MatrixXd::Ones(n, 5 + (has_angle ? 3 : 0) + (has_torque ? 1 : 0)), !by_rate};
     all.columns.col(0) = interval_slopes(inputs_.t_s, by_rate ? rate_ : angle_);
     all.columns.col(1) = rate;
@@ -285,21 +281,14 @@ private:
 inline void measure_bench(const Model& model, const Inputs& inputs, const Recording& recording,
                           const Catalogue& catalogue, UnitEvidence& to) {
   constexpr UnitThresholds limit;
-  to.heated_by = inputs.heat_W.size() > 0              ? "heat_W"
-                 : inputs.heat == HeatSource::law      ? "power_param"
-                 : inputs.heat == HeatSource::drive    ? "drive_A"
-                 : inputs.heat == HeatSource::measured ? "current_A"
-                                                       : "";
+  to.heated_by = heat_column(inputs);
   const plant::BenchAtRows::Values law =
       plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs));
   // A winding's resistance at an impossible temperature says nothing.
   if (!to.motor.is_odd() && model.has_current() && recording.has("power_param") &&
       recording.has("current_A")) {
-    WindowColumns of{Eigen::MatrixXd::Ones(inputs.rows(), 3)};
-    of.columns.col(0) = law.law_A;
-    of.columns.col(2) = recording.column("current_A");
-    if (const ToldCoefficient told = best_told(inputs, of); told.alike > limit.alike)
-      to[UnitMeasure::current].tell(told.between(), -std::log(told.alike));
+    const ToldCoefficient told = best_told(inputs, recording.column("current_A"), law.law_A, true);
+    if (told.alike > limit.alike) to[UnitMeasure::current].tell(told.between(), -std::log(told.alike));
   }
   const auto* const body = std::get_if<LumpedThermalModel>(&model.thermal);
   if (body == nullptr || !inputs.judged(Signal::motor_C)) return;
@@ -310,7 +299,7 @@ inline void measure_bench(const Model& model, const Inputs& inputs, const Record
   ToldCoefficient heat, loss, rest;
   for_each_length(
       inputs.t_s, inputs.runs, [&](Eigen::Index) -> const WindowColumns& { return of; },
-      [&](const WindowSums& sums, Eigen::Index) {
+      [&](const WindowSums& sums) {
         const std::vector<ToldCoefficient> told = sums.all.solve();
         if (std::min(told[0].alike, told[1].alike) <= std::min(heat.alike, loss.alike)) return;
         heat = told[0], loss = told[1], rest = told[2];

@@ -31,7 +31,7 @@ public:
 
   /// One hypothesis for each part.
   typedef std::vector<const UnitHypothesis*> Assignment;
-  /// What all parts share: the logarithms by which measures are off, then in kelvin the air above a room, the coldest motor above
+  /// Shared by all parts: the logarithms by which measures are off, then in kelvin the air above a room, the coldest motor above
   /// its air, and the air that cools the motor above the recorded one.
   typedef std::array<double, unit_measure_count + 3> Shared;
 
@@ -49,14 +49,14 @@ public:
                           likeliest({drive, drag}, units).nats);
   }
 
-  /// What the recordings share, with the units given.
+  /// The likeliest values that the recordings share, with the units given.
   Shared shared_by(const Assignment& units) const {
     Shared all{};
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = likeliest({k}, units).at;
     return all;
   }
 
-  /// What a part says of a hypothesis where the shared constants are given.
+  /// Log posterior of a hypothesis in one part, where the shared constants are given.
   double of_part(std::size_t part, const UnitHypothesis& one, const Shared& shared,
                  const UnitHypothesis& common) const {
     double sum = own(part, one, common);
@@ -113,7 +113,7 @@ private:
     return limit.unit + (one.scales.size() > 1 ? limit.detail : 0.0);
   }
 
-  /// What only one part's numbers say: signs, temperatures, clocks.
+  /// Log likelihood of one part's own numbers: signs, temperatures, clocks.
   double own(std::size_t part, const UnitHypothesis& one, const UnitHypothesis& common) const {
     constexpr UnitThresholds limit;
     assert(part < parts_.size());
@@ -148,7 +148,7 @@ private:
 
   static double price_of_temperatures(const UnitEvidence& of, const UnitHypothesis& one) {
     constexpr UnitThresholds limit;
-    constexpr PossibleTemperature place;
+    using Place = PossibleTemperature;
     constexpr double hottest_air_C = 70.0, below_air_K = 15.0, most_range_K = 150.0;
     const double air_C = one.celsius("ambient_C", of.air.typical);
     double sum = 0.0;
@@ -162,7 +162,7 @@ private:
       }
       const double low_C = one.celsius(scale->column, range.low),
                    high_C = one.celsius(scale->column, range.high);
-      bool possible = low_C > place.low_C && high_C < (is_air ? hottest_air_C : place.high_C);
+      bool possible = low_C > Place::low_C && high_C < (is_air ? hottest_air_C : Place::high_C);
       possible =
           possible && (scale->factor == 1.8 || range.is_odd());  // only degrees Fahrenheit look like Celsius
       possible = possible && (scale->factor < 10.0 || range.whole_numbers);

@@ -28,12 +28,11 @@ struct ColumnScale {
 
 /// All units and signs that are looked for, column by column.
 inline constexpr ColumnScale column_scales[] = {
-    {"rate_dps", "rad/s", "in radians per second where degrees per second are expected",
-     1.0 / 57.29577951308232},
+    {"rate_dps", "rad/s", "in radians per second where degrees per second are expected", rad_per_deg},
     {"rate_dps", "rpm", "in turns per minute where degrees per second are expected", 1.0 / 6.0},
     {"rate_dps", "rev/s", "in turns per second where degrees per second are expected", 1.0 / 360.0},
     {"rate_dps", "-deg/s", "has the wrong sign against the command and angle_deg", -1.0},
-    {"angle_deg", "rad", "in radians where degrees are expected", 1.0 / 57.29577951308232},
+    {"angle_deg", "rad", "in radians where degrees are expected", rad_per_deg},
     {"angle_deg", "rev", "in turns where degrees are expected", 1.0 / 360.0},
     {"angle_deg", "-deg", "has the wrong sign: it falls where rate_dps says that the axis turns forwards",
      -1.0},
@@ -42,10 +41,9 @@ inline constexpr ColumnScale column_scales[] = {
     {"drive_A", "-A", "has the wrong sign: it accelerates the axis backwards", -1.0},
     {"voltage_V", "mV", "in millivolts where volts are expected", 1e3},
     {"voltage_V", "-V", "has the wrong sign: it accelerates the axis backwards", -1.0},
-    {"target_deg", "rad", "in radians where degrees are expected", 1.0 / 57.29577951308232},
+    {"target_deg", "rad", "in radians where degrees are expected", rad_per_deg},
     {"target_deg", "-deg", "has the wrong sign: the axis moves the other way", -1.0},
-    {"target_dps", "rad/s", "in radians per second where degrees per second are expected",
-     1.0 / 57.29577951308232},
+    {"target_dps", "rad/s", "in radians per second where degrees per second are expected", rad_per_deg},
     {"target_dps", "-deg/s", "has the wrong sign: the axis moves the other way", -1.0},
     {"torque_Nm", "mNm", "in millinewton metres where newton metres are expected", 1e3},
     {"torque_Nm", "Ncm", "in newton centimetres where newton metres are expected", 1e2},
@@ -93,9 +91,7 @@ struct UnitHypothesis {
   bool exchanges() const { return !exchanged.first.empty(); }
   /// Whether it turns a sign round.
   bool turns_sign() const {
-    for (const ColumnScale& one : scales)
-      if (one.factor < 0.0) return true;
-    return false;
+    return std::any_of(scales.begin(), scales.end(), [](const ColumnScale& one) { return one.factor < 0.0; });
   }
   /// Whether a recording has all of its columns, and may have exchanged them.
   bool applies_to(const UnitEvidence& evidence) const {
@@ -119,13 +115,13 @@ struct UnitHypothesis {
           (options.empty() ? "" : " ") + option(one.column, std::string(one.column) + ":" + one.option);
     return options;
   }
-  /// What it is a case of.
+  /// The kind of its finding.
   FindingKind kind() const {
     return exchanges()    ? FindingKind::swapped_columns
            : turns_sign() ? FindingKind::wrong_sign
                           : FindingKind::wrong_unit;
   }
-  /// What is wrong, after the column's name.
+  /// The fault, after the column's name.
   std::string words() const {
     if (exchanges()) return "and " + exchanged.second + " are exchanged";
     std::string text;
@@ -152,7 +148,7 @@ struct UnitHypothesis {
     return of(column) != nullptr ? of(column)->factor * celsius_C + of(column)->offset : celsius_C;
   }
 
-  /// What a measure of a recording should be, with its sign.
+  /// The value that a measure of a recording should have, with its sign.
   double expected(UnitMeasure measure, const UnitEvidence& evidence) const {
     const double rate = factor("rate_dps"), angle = factor("angle_deg"), time = factor("t_s"),
                  command = factor("drive_A") * factor("voltage_V"), current = factor("current_A"),

@@ -28,7 +28,6 @@ struct UnitThresholds {
   double same = 0.97;        ///< correlation of two columns of which one is the other's slope
   std::size_t windows = 40;  ///< that a regression has at least
   double common = 1.5;       ///< factor shared by several constants that is worth a word
-  double moving = 0.05;      ///< of the speed's 95th percentile: what is slower may be stuck
 };
 
 }  // namespace thermopower::gap::engine

@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 /// @file windows.hpp
@@ -52,8 +53,8 @@ public:
   /// The coefficients of all terms.
   std::vector<ToldCoefficient> solve() const {
     const Eigen::Index terms = gram_.rows() - 1;
-    std::vector<Eigen::Index> all;
-    for (Eigen::Index k = 0; k <= terms; ++k) all.push_back(k);
+    std::vector<Eigen::Index> all(static_cast<std::size_t>(terms) + 1);
+    std::iota(all.begin(), all.end(), Eigen::Index{0});
     const Eigen::MatrixXd precision = precision_of(all);
     std::vector<ToldCoefficient> told;
     for (Eigen::Index k = 0; k < terms; ++k) {
@@ -106,7 +107,7 @@ private:
   std::size_t windows_ = 0;
 };
 
-/// What is averaged: for each row the mean of terms and response over the interval after it; NaN: not known.
+/// The columns that are averaged: for each row the mean of terms and response over the interval after it; NaN: not known.
 struct WindowColumns {
   Eigen::MatrixXd columns;  ///< a row each; the response is the last column
   bool curved = false;      ///< the bell makes of the first term its derivative in time
@@ -148,7 +149,7 @@ struct WindowSums {
   }
 };
 
-/// Hands the sums of all lengths of bells that have enough windows to `use(const WindowSums&, Eigen::Index length)`.
+/// Hands the sums of all lengths of bells that have enough windows to `use(const WindowSums&)`.
 /// @param of  (Eigen::Index length) -> WindowColumns
 template <class Of, class Use>
 void for_each_length(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs, Of&& of, Use&& use) {
@@ -156,7 +157,7 @@ void for_each_length(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& run
   for (Eigen::Index length = 2; length <= std::min(longest, t_s.size()); length *= 2) {
     const WindowSums sums(t_s, runs, of(length), length);
     if (sums.all.windows() < UnitThresholds().windows) break;
-    use(sums, length);
+    use(sums);
   }
 }
 
