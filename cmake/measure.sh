@@ -50,6 +50,12 @@ SOURCE
   rm -rf "$scratch"
 }
 
+for checkout in "$@"; do
+  [ -d "$checkout/include/thermopower/gap" ] || {
+    echo "measure.sh: $checkout is no checkout: it has no folder include/thermopower/gap" >&2
+    exit 2
+  }
+done
 for checkout in "$here" "$@"; do
   [ $# -eq 0 ] || echo "$checkout"
   rooms "$checkout"
