@@ -234,8 +234,10 @@ inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
 
 /// The errors that a gap is measured by: as configured, with refitted constants, with the causes, and of rivals.
 struct ErrorsOfAll {
-  Errors before, constants, after;
-  std::vector<Errors> rivals;
+  Errors before;               ///< as configured
+  Errors constants;            ///< with refitted constants
+  Errors after;                ///< with the causes
+  std::vector<Errors> rivals;  ///< of each rival
 };
 
 /// Curves of a signal over one recording.
