@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 //
-// What each rule of the diagnosis is worth: how many ask for it, and how many answers change without it. Reads what ablation.sh left.
+// The worth of each rule of the diagnosis: how many ask for it, and how many answers change without it. Reads what ablation.sh left.
 //   gap_benchmark_ablation --dir DIR --out FILE.md [--real FOLDER] [--note TEXT] RULE ...
 // Reports with all rules are in DIR/reports (of real recordings in DIR/real/reports), those without one in DIR/reports_without_RULE.
 
@@ -112,10 +112,10 @@ int main(int argc, char** argv) {
   try {
     const Answers all = of_benchmark(directory, rules.front());
     std::ofstream out(out_path);
-    out << "# What each rule of the diagnosis is worth\n<!-- page gap_ablation -->\n\n"
-           "One rule is taken away at a time, and the same recordings are diagnosed again. The table says how many asked for\n"
-           "it, because it would change something there, and how many answers change. A rule without which nothing becomes worse\n"
-           "is removed. The rules are listed in `thermopower/gap/rule.hpp`.\n\n"
+    out << "# The worth of each rule of the diagnosis\n<!-- page gap_ablation -->\n\n"
+           "For engineers who change the diagnosis. One rule is taken away at a time, and the same recordings are diagnosed\n"
+           "again. The table says how many asked for it, because it would change something there, and how many answers change.\n"
+           "Rules without which nothing becomes worse are the next to go. The rules are listed in `thermopower/gap/rule.hpp`.\n\n"
         << (note.empty() ? "" : note + "\n\n") << "With all rules " << all.right() << " of " << all.cases()
         << " drawn recordings are answered rightly or honestly";
     if (!real.empty()) {
