@@ -4,7 +4,6 @@
 #include <thermopower/gap/data/linear_solve.hpp>
 
 #include <random>
-#include <vector>
 
 #include "../../catch.hpp"
 
@@ -79,8 +78,8 @@ TEST_CASE("Of all solutions of a matrix of lower rank the shortest is found") {
 }
 
 TEST_CASE("Fewer equations than unknowns, and none that says anything, have a shortest solution, too") {
-  const std::vector<double> row{3.0, 4.0};
-  const Eigen::MatrixXd a = Eigen::Map<const Eigen::MatrixXd>(row.data(), 1, 2);
+  Eigen::MatrixXd a(1, 2);
+  a << 3.0, 4.0;
   const Eigen::VectorXd x = LeastSquares(a).solve(Eigen::VectorXd::Constant(1, 50.0));
   CHECK(x[0] == Approx(6.0));
   CHECK(x[1] == Approx(8.0));

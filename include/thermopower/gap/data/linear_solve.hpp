@@ -30,7 +30,7 @@ public:
     for (Eigen::Index k = 0; k < n; ++k)
       for (Eigen::Index j = k + 1; j < n; ++j) {
         const double multiple = divided(factors_(j, k), k);
-        factors_.col(j).tail(n - j) -= multiple * factors_.col(k).tail(n - j);
+        for (Eigen::Index i = j; i < n; ++i) factors_(i, j) -= multiple * factors_(i, k);
       }
     for (Eigen::Index k = 0; k < n; ++k)
       for (Eigen::Index i = k + 1; i < n; ++i) factors_(i, k) = divided(factors_(i, k), k);
@@ -40,7 +40,8 @@ public:
   Eigen::VectorXd solve(Eigen::VectorXd b) const {
     assert(b.size() == factors_.rows());
     const Eigen::Index n = factors_.rows();
-    for (Eigen::Index k = 0; k < n; ++k) b.tail(n - k - 1) -= factors_.col(k).tail(n - k - 1) * b[k];
+    for (Eigen::Index k = 0; k < n; ++k)
+      for (Eigen::Index i = k + 1; i < n; ++i) b[i] -= factors_(i, k) * b[k];
     for (Eigen::Index k = n; k-- > 0;) {
       b[k] = divided(b[k], k);
       for (Eigen::Index i = k + 1; i < n; ++i) b[k] -= factors_(i, k) * b[i];
@@ -64,12 +65,12 @@ inline void invert_symmetric(Eigen::MatrixXd& a) {
   for (Eigen::Index k = 0; k < n; ++k) {
     const double pivot = a(k, k);
     a(k, k) = 1.0;
-    a.row(k) /= pivot;
+    for (Eigen::Index j = 0; j < n; ++j) a(k, j) /= pivot;
     for (Eigen::Index i = 0; i < n; ++i) {
       if (i == k) continue;
       const double factor = a(i, k);
       a(i, k) = 0.0;
-      a.row(i) -= factor * a.row(k);
+      for (Eigen::Index j = 0; j < n; ++j) a(i, j) -= factor * a(k, j);
     }
   }
 }
@@ -129,13 +130,14 @@ private:
     Eigen::Index longest = k;
     for (Eigen::Index j = k + 1; j < r_.cols(); ++j)
       if (length_below(k, j) > length_below(k, longest)) longest = j;
-    r_.col(k).swap(r_.col(longest));
+    for (Eigen::Index i = 0; i < r_.rows(); ++i) std::swap(r_(i, k), r_(i, longest));
     std::swap(order_[static_cast<std::size_t>(k)], order_[static_cast<std::size_t>(longest)]);
   }
 
   /// The mirror that turns column k, from its diagonal on, into that direction.
   void add_mirror(Eigen::Index k, double length) {
-    Mirror mirror{k, r_.col(k).tail(r_.rows() - k)};
+    Mirror mirror{k, Eigen::VectorXd(r_.rows() - k)};
+    for (Eigen::Index i = k; i < r_.rows(); ++i) mirror.normal[i - k] = r_(i, k);
     mirror.normal[0] += mirror.normal[0] < 0.0 ? -length : length;
     mirror.normal /= mirror.normal.norm();
     mirrors_.push_back(std::move(mirror));

@@ -68,6 +68,8 @@ struct Estimate {
 struct JackknifeThresholds {
   std::size_t least_rows = 300;  ///< of a regression: fewer do not tell
   std::size_t blocks = 20;       ///< of the rows
+  double sure =
+      5.0;  ///< standard errors that an estimate differs from 0 by: one in 25 000, of so many blocks
 };
 
 /// Standard error of a statistic by the delete-one-block jackknife (Efron & Tibshirani 1993, chapter 11).

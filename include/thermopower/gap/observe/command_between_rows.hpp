@@ -27,7 +27,6 @@ namespace thermopower::gap::engine {
 struct CommandThresholds {
   double least_share = 0.2;  ///< every second command logged is felt by a quarter
   double most_share = 0.65;  ///< a command that changes steadily by half; more is another thing
-  double sure = 5.0;         ///< standard errors that a share differs from 0 by: one in 25 000, of 20 parts
   double precise = 0.08;     ///< largest standard error of the share
   double agree = 2.0;        ///< standard errors that two shares may differ by
   double matters = 0.2;      ///< noise scales of what half a row changes: less is nobody's concern
@@ -38,7 +37,7 @@ struct CommandThresholds {
 inline std::optional<Estimate> sure_of(Estimate share) {
   constexpr CommandThresholds limit;
   if (!(share.error < limit.precise)) return std::nullopt;
-  if (std::abs(share.value) < limit.sure * share.error) share.value = 0.0;
+  if (std::abs(share.value) < JackknifeThresholds().sure * share.error) share.value = 0.0;
   return share;
 }
 
@@ -135,8 +134,8 @@ private:
 
   /// Whether a share of none can be told from the least that is believed.
   static bool tells(const std::optional<MotionFit>& fit) {
-    constexpr CommandThresholds limit;
-    return fit && fit->value[0] != 0.0 && limit.sure * fit->second_by_first().error < limit.least_share;
+    return fit && fit->value[0] != 0.0 &&
+           JackknifeThresholds().sure * fit->second_by_first().error < CommandThresholds().least_share;
   }
 
   /// Of the next step of what the first term is.

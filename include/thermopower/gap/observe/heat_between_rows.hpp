@@ -5,7 +5,6 @@
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/normal_equations.hpp>
-#include <thermopower/gap/observe/command_between_rows.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 #include <thermopower/plant/samples.hpp>
 
@@ -68,7 +67,7 @@ public:
   std::optional<double> share() const {
     constexpr HeatThresholds limit;
     const Estimate best = told();
-    if (!(best.error < limit.precise) || !(best.value > CommandThresholds().sure * best.error))
+    if (!(best.error < limit.precise) || !(best.value > JackknifeThresholds().sure * best.error))
       return std::nullopt;
     if (!(best.value > limit.least_share) || !(best.value < limit.most_share)) return std::nullopt;
     return best.value > limit.whole ? 1.0 : best.value;
