@@ -11,16 +11,16 @@ enum class Reason {
   constants_within_known,   ///< refitted constants suffice, and moved no further than the file says they may
   constants_moved,          ///< refitted constants suffice, and one moved further than the file says is known
   common_factor,            ///< several constants are off by one factor: a unit, a gear or a supply
-  constant_closes_most,  ///< one constant is off by more than is known of it, closes most of the gap, and leaves a rest
-  constants_leave_a_rest,  ///< constants do best, and leave a gap
-  cause_explains,          ///< the named cause brings every signal near its floor
-  several_explain,         ///< several explanations do
-  cause_or_constants,      ///< the named cause does, and so do refitted constants, which it does not spare
-  cause_closes_a_part,     ///< the named cause closes a material part of the gap
-  several_close_a_part,    ///< several explanations do, none of them likely enough alone
-  closes_too_little,       ///< the likeliest explanation closes too little of the gap
-  no_explanation_likely,   ///< no explanation is likely enough
-  simulation_runs_away,    ///< the simulation leaves the range of numbers
+  constants_close_most,     ///< constants alone close most of the gap, and leave a rest
+  constants_leave_a_rest,   ///< constants do best, and leave a gap
+  cause_explains,           ///< the named cause brings every signal near its floor
+  several_explain,          ///< several explanations do
+  cause_or_constants,       ///< the named cause does, and so do refitted constants, which it does not spare
+  cause_closes_a_part,      ///< the named cause closes a material part of the gap
+  several_close_a_part,     ///< several explanations do, none of them likely enough alone
+  closes_too_little,        ///< the likeliest explanation closes too little of the gap
+  no_explanation_likely,    ///< no explanation is likely enough
+  simulation_runs_away,     ///< the simulation leaves the range of numbers
 };
 
 /// One sentence in plain words.
@@ -37,9 +37,9 @@ inline const char* to_string(Reason reason) {
       return "refitted constants alone bring every signal near its noise floor, and no effect is needed";
     case Reason::common_factor:
       return "one factor does what several constants would have to: look for a unit, a gear or a supply before a constant is blamed";
-    case Reason::constant_closes_most:
-      return "one constant is off by more than is known of it; correcting it closes most of the held-out gap, and a rest stays "
-             "above the noise floor";
+    case Reason::constants_close_most:
+      return "refitted constants alone close most of the held-out gap; a rest stays above the noise floor, and no effect is shown "
+             "to take it away";
     case Reason::constants_leave_a_rest:
       return "there is a gap; refitted constants predict held-out data best and leave a gap, and no effect does better";
     case Reason::cause_explains:
@@ -76,8 +76,8 @@ inline const char* code_of(Reason reason) {
       return "constants_moved";
     case Reason::common_factor:
       return "common_factor";
-    case Reason::constant_closes_most:
-      return "constant_closes_most";
+    case Reason::constants_close_most:
+      return "constants_close_most";
     case Reason::constants_leave_a_rest:
       return "constants_leave_a_rest";
     case Reason::cause_explains:

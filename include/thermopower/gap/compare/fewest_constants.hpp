@@ -28,11 +28,10 @@ inline Candidate with_only(const FitProblem& problem, const std::vector<int>& mo
 /// and inertias by one factor. The one that moves the fewest constants is named.
 ///
 /// Forward selection: the constant that helps most is added until the training data are predicted as well as by `all`.
-/// @param all  the fit of all constants
+/// @param all      the fit of all constants
+/// @param as_well  how many times its root mean square of each signal, or the noise where that is more, counts as well
 /// @return     the fit with only those; `all` itself where no constant has slack
-inline Candidate fewest_constants(const FitProblem& problem, const Candidate& all) {
-  constexpr double as_well =
-      1.05;  // of the root mean square of each signal, or of the noise where that is more
+inline Candidate fewest_constants(const FitProblem& problem, const Candidate& all, double as_well) {
   const std::size_t count = problem.model->calibrated().size();
   assert(all.fit.point.size() >= static_cast<Eigen::Index>(count));
   const auto is_as_good = [&](const Candidate& one) {

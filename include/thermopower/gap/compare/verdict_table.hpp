@@ -25,8 +25,8 @@ struct VerdictLimits {
   double most_by_chance = 2.0;
   /// Share of the gap that the lower end of an interval must reach to be material.
   double material = 0.05;
-  /// The same where a rest stays and constants alone do as well, for a single constant or for a cause that spares them all: what is
-  /// missing bends constants, too, but seldom one alone so far that it closes half of the gap.
+  /// The same where a rest stays, for constants alone or for a cause that spares them all: what is missing bends constants, too, but
+  /// seldom so far that they close half of the gap.
   double mostly = 0.5;
   /// Share of what refitted constants leave that a cause may leave: a fifth better than constants alone.
   double of_constants = 0.8;
@@ -115,8 +115,7 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, int 
   // Near the floor as configured, too, and no better: the gap shows in longer windows, and constants do not close it.
   const bool closes_nothing = !is_proven && numbers.configured <= limit.near_floor;
   const bool closes_most = 1.0 - numbers.share.most >= limit.mostly;
-  if (only_constants && !near && beyond_known == 1 && closes_most)
-    return {Verdict::partial, Reason::constant_closes_most};
+  if (only_constants && !near && closes_most) return {Verdict::partial, Reason::constants_close_most};
   if (only_constants && (!near || closes_nothing))
     return {Verdict::unexplained, Reason::constants_leave_a_rest};
   // One factor in a unit, a gear or a supply does what the moved constants do, alone or beside an effect.

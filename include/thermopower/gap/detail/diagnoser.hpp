@@ -278,7 +278,7 @@ private:
   void report(Attempt& attempt, const Answer& choice) {
     std::vector<Candidate>& candidates = attempt.candidates;
     Candidate chosen = candidates[choice.chosen];
-    const bool only_constants = chosen.explanation.effects.empty();
+    bool only_constants = chosen.explanation.effects.empty();
     if (only_constants && !effort_leads_) {
       chosen = likeliest_constants(candidates);
       Attribution(attempt.problem).survey(chosen);
@@ -304,37 +304,57 @@ private:
         constants_of(constants, model_, only_constants ? weight : correlation_of(constants, attempt.problem));
     const std::vector<ConstantEstimate> of_chosen =
         only_constants ? refitted : constants_of(chosen, model_, weight);
-    const bool spares_constants = beyond_known(of_chosen).empty();
+    // A curve can do what constants do, too: it spares none.
+    const bool spares_constants = beyond_known(of_chosen).empty() && !chosen.explanation.is_a_curve();
     if (only_constants || !spares_constants) result_.numbers.common_factor = common_factor_found();
     const bool is_shared = only_constants ? share_a_factor(refitted) : is_another_supply(chosen, of_chosen);
     if (result_.numbers.common_factor == CommonFactor::none && is_shared)
       result_.numbers.common_factor = CommonFactor::of_no_constant;
-    const std::vector<int> beyond = beyond_known(refitted);
-    Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
-                                             : decide(result_.numbers, only_constants,
-                                                      static_cast<int>(beyond.size()), spares_constants);
+    Decision decided = ran_away(result_.gap)
+                           ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
+                           : decide(result_.numbers, only_constants,
+                                    static_cast<int>(beyond_known(refitted).size()), spares_constants);
     const auto names_a_cause = [](Verdict verdict) {
       return verdict == Verdict::explained || verdict == Verdict::ambiguous || verdict == Verdict::partial;
     };
     if (names_a_cause(decided.verdict) && !only_constants && !has_readings_enough(chosen))
       decided = {Verdict::unexplained, Reason::no_explanation_likely};
+    const std::vector<int> beyond = beyond_known(refitted);
+    double probability = only_constants ? choice.probability : 1.0 - choice.probability;
+    // An explanation that does not beat refitted constants leaves the answer to these; a curve does where both do as well.
+    const bool is_beaten = decided.reason == Reason::closes_too_little ||
+                           (decided.reason == Reason::cause_or_constants && chosen.explanation.is_a_curve());
+    if (!only_constants && is_beaten) {
+      keep_constants_alone(result_, model_);
+      const double together = std::min(1.0, choice.probability + probability_of_constants(candidates));
+      const Decision of_constants =
+          decide(numbers_of(result_.gap, together), true, static_cast<int>(beyond.size()), spares_constants);
+      if (names_a_cause(of_constants.verdict)) {
+        decided = of_constants;
+        only_constants = true;
+        probability = together;
+        result_.numbers.share = share_left(result_.gap);
+        result_.numbers.probability = together;
+      }
+    }
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
     const bool by_constants = decided.reason == Reason::constants_within_known ||
                               decided.reason == Reason::constants_moved ||
-                              decided.reason == Reason::constant_closes_most ||
+                              decided.reason == Reason::constants_close_most ||
                               (decided.reason == Reason::common_factor && only_constants);
     const bool named = names_a_cause(decided.verdict);
     result_.constants = named && !by_constants ? of_chosen : refitted;
     note_recalibration(result_);
     if (!named || by_constants) keep_constants_alone(result_, model_);
     if (named && by_constants) {
-      if (beyond.empty()) constants.explanation = fewest_constants(attempt.problem, constants).explanation;
-      else constants.explanation.released = beyond;
-      name_causes(result_, candidates,
-                  {choice.chosen, only_constants ? choice.probability : 1.0 - choice.probability, 0.0, {}},
-                  constants, model_, weight);
+      // Where a rest stays, those count that do for the gap what a cause would have to.
+      const double as_well =
+          decided.reason == Reason::constants_close_most ? 1.0 / verdict_limits.of_constants : 1.05;
+      if (beyond.size() == 1) constants.explanation.released = beyond;
+      else constants.explanation = fewest_constants(attempt.problem, constants, as_well).explanation;
+      name_causes(result_, candidates, {choice.chosen, probability, 0.0, {}}, constants, model_, weight);
     } else if (named) {
       result_.augmented = fitted;
       name_causes(result_, candidates, choice, chosen, model_, weight);

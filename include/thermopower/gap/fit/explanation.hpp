@@ -105,6 +105,9 @@ struct Explanation {
                        [](const CatalogueEntry* one) { return one->info.curve.has_value(); });
   }
 
+  /// Whether it is one curve and nothing else.
+  bool is_a_curve() const { return effects.size() == 1 && has_curve(); }
+
   /// Whether sides meet and part in one of its effects (EffectInfo::strikes).
   bool strikes() const {
     return std::any_of(effects.begin(), effects.end(),

@@ -64,7 +64,7 @@ public:
       const double next = cutoff * propose_thresholds.next_cutoff;
       EffortRows rows(sampled, next, propose_thresholds.most_train_rows);
       const PlainFit there(model, catalogue, rows);
-      if (!plain.is_noisier_than(there, sampled.noise_share(cutoff))) break;
+      if (!plain.is_noisier_than(there)) break;
       cutoff = next;
       train_rows_ = std::move(rows);
       plain = there;

@@ -64,12 +64,10 @@ public:
 
   /// Whether noise of the motion spoils this fit more than one with a lower cutoff. Noise of the acceleration hides the
   /// inertia, so the inertia grows there, or the residual falls by more than the effort does.
-  /// @param noise_share  of the acceleration's variance that may be noise, here
-  bool is_noisier_than(const PlainFit& lower, double noise_share) const {
+  bool is_noisier_than(const PlainFit& lower) const {
     if (!is_known_ || !lower.is_known_) return false;
     const double grown = lower.inertia_ - inertia_;
-    const bool hidden = noise_share > propose_thresholds.acceleration_noise && lower.inertia_ > 0.0 &&
-                        grown > propose_thresholds.hidden_inertia * lower.inertia_ &&
+    const bool hidden = lower.inertia_ > 0.0 && grown > propose_thresholds.hidden_inertia * lower.inertia_ &&
                         grown > propose_thresholds.certain * lower.inertia_error_;
     const double fallen = residual_square_ - lower.residual_square_,
                  less_effort = std::max(0.0, effort_square_ - lower.effort_square_);

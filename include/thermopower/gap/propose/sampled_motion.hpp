@@ -108,21 +108,6 @@ public:
     for (const Span& one : spans) stretches.push_back(sampled(one));
   }
 
-  /// Variance of the acceleration's noise after a low-pass, as a share of all of its variance, were noise white; may exceed 1.
-  double noise_share(double cutoff) const {
-    double noise = 0.0, all = 0.0;
-    for (const Stretch& one : stretches) {
-      // The spectrum of white noise times the square of what differentiates.
-      const double turn = plant::rad_per_turn, h = one.interval_s;
-      noise += static_cast<double>(one.effort.size()) *
-               (one.rate.size() > 0
-                    ? 2.0 / 3.0 * std::pow(rate_noise * turn / h, 2) * std::pow(cutoff, 3)
-                    : 2.0 / 5.0 * std::pow(angle_noise * turn * turn / (h * h), 2) * std::pow(cutoff, 5));
-      all += one.slope(one.smooth_rate(cutoff)).squaredNorm();
-    }
-    return all > 0.0 ? noise / all : 0.0;
-  }
-
 private:
   /// Rows of a run between holes, and the grid laid over them.
   struct Span {

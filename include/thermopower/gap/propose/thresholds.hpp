@@ -12,10 +12,8 @@ namespace thermopower::gap::engine {
 struct ProposeThresholds {
   double motion_cutoff = 0.15;    ///< of the low-pass on motion and effort, as a share of the grid's rate
   double residual_cutoff = 0.12;  ///< of the low-pass on the residuals, as a share of the grid's rate
-  double next_cutoff = 0.65;   ///< times the one before, where the acceleration is noise in too large a part
-  double least_cutoff = 0.01;  ///< as a share of the sampling rate
-  double acceleration_noise =
-      0.01;                     ///< share of the acceleration's variance that may be noise, were it white
+  double next_cutoff = 0.65;    ///< times the one before, where the acceleration is noise in too large a part
+  double least_cutoff = 0.01;   ///< as a share of the sampling rate
   double hidden_inertia = 0.1;  ///< share by which a lower cutoff must raise the inertia to be taken,
   double certain = 3.0;         ///< and standard errors of it;
   double fallen = 0.4;          ///< or share of the residual's variance that it must take away
