@@ -151,6 +151,7 @@ public:
 
 private:
   static constexpr double fast_rad_per_s = 10.0;  ///< beyond, errors grow in proportion to the rate
+  static constexpr double series_below = 1e-3;    ///< decay for which a quotient would lose half its digits
 
   struct Slope {
     Scalar angle, rate, twist, twist_rate;
@@ -230,15 +231,18 @@ private:
   /// The effects' own states, each solved exactly for a slope and a decay that stay as they are.
   void move_own(const AxisState<Scalar>& from, const Slope& rate, const Scalar& h_s,
                 AxisState<Scalar>& to) const {
-    using std::exp;
-    constexpr double series_below = 1e-3;  // where the quotient would lose half its digits
     for (int i = 0; i < from.own.count; ++i) {
       const OwnState<Scalar>& own = rate.own[i];
-      const Scalar decay = own.per_s * h_s;
-      const Scalar share = value_of(decay) > series_below ? Scalar((1.0 - exp(Scalar(-decay))) / decay)
-                                                          : Scalar(1.0 - decay * (0.5 - decay * (1.0 / 6.0)));
-      to.own.at[i] = from.own.at[i] + h_s * share * (own.slope - own.per_s * from.own.at[i]);
+      to.own.at[i] = from.own.at[i] +
+                     h_s * settled_share(Scalar(own.per_s * h_s)) * (own.slope - own.per_s * from.own.at[i]);
     }
+  }
+
+  /// (1 - exp(-decay)) / decay: the mean of what decays over a step, as a share of its beginning.
+  static Scalar settled_share(const Scalar& decay) {
+    using std::exp;
+    return value_of(decay) > series_below ? Scalar((1.0 - exp(Scalar(-decay))) / decay)
+                                          : Scalar(1.0 - decay * (0.5 - decay * (1.0 / 6.0)));
   }
 
   /// One Runge-Kutta step from `from`, where the slope is `k1`; `bend` is how far the acceleration strays
@@ -453,7 +457,6 @@ private:
   bool creep(AxisState<Scalar>& state, double& t_s, Scalar& left_s, const AxisDrive<Scalar>& drive, int depth,
              const Beginning& begins) const {
     constexpr double stiff_transition = 0.3, stiff = 0.6;
-    using std::exp;
     using std::log;
     if (begins.direction == 0) return false;
     const Slope& now = begins.slope;
@@ -465,7 +468,7 @@ private:
       is_stiff = is_stiff || value_of(per_s) * value_of(left_s) > stiff;
     }
     if (!is_stiff) return false;
-    Scalar h_s = left_s, decay = per_s * h_s, phi_1 = (1.0 - exp(Scalar(-decay))) / decay;
+    Scalar h_s = left_s, decay = per_s * h_s, phi_1 = settled_share(decay);
     const double end_rate =
         value_of(state.rate_rad_per_s) + value_of(now.rate) * value_of(h_s) * value_of(phi_1);
     const bool stops = dry_ && end_rate * begins.direction < 0.0;
@@ -473,10 +476,11 @@ private:
       h_s = -log(Scalar(1.0 + per_s * state.rate_rad_per_s / now.rate)) / per_s;
       if (!(value_of(h_s) > 0.0 && value_of(h_s) < value_of(left_s))) return false;
       decay = per_s * h_s;
-      phi_1 = (1.0 - exp(Scalar(-decay))) / decay;
+      phi_1 = settled_share(decay);
     }
     const double h = value_of(h_s);
-    const Scalar phi_2 = (1.0 - phi_1) / decay;
+    const Scalar phi_2 =
+        value_of(decay) > series_below ? Scalar((1.0 - phi_1) / decay) : Scalar(0.5 - decay * (1.0 / 6.0));
     AxisState<Scalar> reached = state;
     reached.angle_rad += h_s * (state.rate_rad_per_s + now.rate * h_s * phi_2);
     const Scalar gain_rad_per_s = now.rate * h_s * phi_1;

@@ -168,6 +168,11 @@ inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording
   bool held_moves = false;
   for (std::size_t i = 0; i < signal_count; ++i)
     held_moves = held_moves || held_ranges[i] > limit.not_moving * ranges[i];
+  constexpr auto heat = static_cast<std::size_t>(Signal::motor_C);
+  held_moves = held_moves || (held_ranges[heat] > limit.not_driven * ranges[heat] &&
+                              std::any_of(held_out.begin(), held_out.end(), [](const PreparedRecording& one) {
+                                return is_driven_by_others(one.inputs());
+                              }));
   if (driven > 0.0 && held_driven <= limit.not_driven * driven && !held_moves)
     add(FindingKind::held_out_not_excited, held_out.front(), "",
         "is never driven and does not move: no model can be judged on it",

@@ -38,25 +38,27 @@ inline const char* to_string(LoopKind kind) {
 /// A target says that a controller does. Without one, effort tells it: one that comes from outside repeats or is smooth, as
 /// whoever made it wrote it down. One that a controller makes of measured motion is as rough as that, and one that is measured has
 /// noise of its own.
+/// Each recording is asked for itself, and most of the rows decide: a ramp is smooth, and a staircase repeats.
 /// @param recordings  prepared ones
 inline LoopKind loop_of(const Model& model, const std::vector<Inputs>& recordings) {
-  double square = 0.0, noise = 0.0, same = 0.0, rows = 0.0;
+  Eigen::Index from_outside = 0, all = 0;
   for (const Inputs& inputs : recordings) {
     if (!inputs.axis()) continue;
     if (inputs.closed_loop || inputs.target_deg.size() > 0 || inputs.target_dps.size() > 0)
       return LoopKind::closed_recorded;
     const Eigen::VectorXd& effort = plant::command(inputs, model.axis->voltage_driven());
-    if (effort.size() < 2) continue;
-    const double n = static_cast<double>(effort.size());
-    square += effort.squaredNorm();
-    noise += n * std::pow(plant::sample_noise(effort, inputs.runs), 2);
-    for (Eigen::Index i = 1; i < effort.size(); ++i) same += effort[i] == effort[i - 1] ? 1.0 : 0.0;
-    rows += n;
+    const Eigen::Index rows = effort.size();
+    if (rows < 2 || !(effort.squaredNorm() > 0.0)) continue;
+    Eigen::Index same = 0;
+    for (Eigen::Index i = 1; i < rows; ++i) same += effort[i] == effort[i - 1] ? 1 : 0;
+    const bool repeats = static_cast<double>(same) > propose_thresholds.repeats * static_cast<double>(rows);
+    const double rms = std::sqrt(effort.squaredNorm() / static_cast<double>(rows)),
+                 noise = plant::sample_noise(effort, inputs.runs);
+    if (repeats || noise < propose_thresholds.smooth_effort * rms) from_outside += rows;
+    all += rows;
   }
-  if (!(square > 0.0)) return LoopKind::unknown;
-  const bool repeats = same / rows > propose_thresholds.repeats;
-  const bool is_smooth = std::sqrt(noise / square) < propose_thresholds.smooth_effort;
-  return repeats || is_smooth ? LoopKind::open : LoopKind::closed_found;
+  if (all == 0) return LoopKind::unknown;
+  return 2 * from_outside > all ? LoopKind::open : LoopKind::closed_found;
 }
 
 }  // namespace thermopower::gap::engine

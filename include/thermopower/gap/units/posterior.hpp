@@ -65,7 +65,7 @@ public:
   }
 
   /// Whether a common hypothesis holds in every part: no sign speaks against it, and what it leaves of the measures that it
-  /// changes is near 1.
+  /// changes is near 1, and of warming and cooling alike.
   bool holds_everywhere(const UnitHypothesis& one, const Assignment& units) const {
     constexpr UnitThresholds limit;
     for (std::size_t i = 0; i < parts_.size(); ++i)
@@ -78,6 +78,14 @@ public:
         const double near = std::log(kind == UnitMeasure::drive ? limit.near_motion : limit.near_heat);
         if (std::abs(deviation(i, k, one).value) > near) return false;
       }
+    // A clock makes a body warm and cool faster by one factor.
+    for (std::size_t i = 0; one.of("t_s") != nullptr && i < parts_.size(); ++i) {
+      const Deviation warms = deviation(i, static_cast<std::size_t>(UnitMeasure::heating), one),
+                      cools = deviation(i, static_cast<std::size_t>(UnitMeasure::cooling), one);
+      if (units[i] == &one && warms.is_told && cools.is_told &&
+          std::abs(warms.value - cools.value) > std::log(limit.alike_heat))
+        return false;
+    }
     return true;
   }
 

@@ -23,9 +23,10 @@ struct UnitThresholds {
   double farthest = 30.0;    ///< factor that a constant is off by at most, as KnownConstants::farthest_factor
   double near_motion = 1.6;  ///< factor that the constants of an axis may be off beside a wrong unit
   double near_heat = 6.0;    ///< the same of a body or circuit, which hides heat from its thermometer
-  double most_sign = 12.0;   ///< nats that one recording says of a sign at most
-  double alike = 0.75;       ///< correlation, beside all else, from which a regression tells a coefficient
-  double same = 0.97;        ///< correlation of two columns of which one is the other's slope
+  double alike_heat = 3.0;  ///< factor by which a body may warm otherwise than it cools, beside a wrong clock
+  double most_sign = 12.0;  ///< nats that one recording says of a sign at most
+  double alike = 0.75;      ///< correlation, beside all else, from which a regression tells a coefficient
+  double same = 0.97;       ///< correlation of two columns of which one is the other's slope
   std::size_t windows = 40;  ///< that a regression has at least
   double common = 1.5;       ///< factor shared by several constants that is worth a word
 };
