@@ -178,7 +178,15 @@ private:
   Yardstick yardstick_of(const Model& witness, const Errors& errors,
                          const std::vector<Segment>& segments) const {
     const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_);
-    return {sigma, floor_of(witness, errors, sigma, segments, catalogue_, FirstReadings::within_their_noise)};
+    const auto floor_by = [&](const Model& model) {
+      return floor_of(model, errors, sigma, segments, catalogue_, FirstReadings::within_their_noise);
+    };
+    Yardstick yardstick{sigma, floor_by(witness)};
+    // A witness that runs away somewhere, by a drag that drives, tells no floor.
+    const auto is_told = [](double one) { return std::isfinite(one); };
+    if (!std::all_of(yardstick.floor.begin(), yardstick.floor.end(), is_told))
+      yardstick.floor = floor_by(model_);
+    return yardstick;
   }
 
   /// The errors of a model in some segments, in units of the noise floor. Of two explanations one may fit starts
