@@ -113,6 +113,14 @@ TEST_CASE("a large gap is no wrong unit") {
   CHECK(decision(rubbing_model(), limited).find("rpm") == std::string::npos);
 }
 
+TEST_CASE("a clock in another unit makes a body warm and cool by one factor; two factors are no clock") {
+  Model model = cased_model();
+  LumpedThermalModel& body = std::get<LumpedThermalModel>(model.thermal);
+  body.heat_capacity_J_per_K *= 20.0;
+  body.conductance_W_per_K /= 5.0;
+  for (const Finding& one : errors(model, {bench()})) CHECK(one.column != "t_s");
+}
+
 TEST_CASE("a column that was lost for some seconds hides no unit of it, and makes none") {
   const char* const lost = GENERATE("angle_deg", "rate_dps");
   const auto with_a_hole = [&](Recording r) {

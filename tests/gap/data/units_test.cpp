@@ -297,6 +297,20 @@ TEST_CASE("a body that nothing drives is data where it cools or a neighbour warm
   CHECK_FALSE(is_said(cooling));
   CHECK_FALSE(is_said(warmed));
   CHECK(is_said(alone));
+
+  // Nor has what is held out to be driven: a body that cools by a part of what it warmed by says enough.
+  const auto is_excited = [](const Recording& held_out) {
+    for (const Finding& one :
+         engine::check(test::bench_model(), {bench()}, {held_out}, {0.5, false}, standard_catalogue())
+             .findings)
+      if (one.kind == FindingKind::held_out_not_excited) return false;
+    return true;
+  };
+  Recording little = off, still = off;
+  little.set("motor_C", 25.0 + 4.0 * (-away).exp());
+  still.set("motor_C", 25.0 + 0.01 * (-away).exp());
+  CHECK(is_excited(little));
+  CHECK_FALSE(is_excited(still));
 }
 
 TEST_CASE("an empty column is said to be empty") {
