@@ -120,21 +120,21 @@ TEST_CASE(
 }
 
 TEST_CASE("a ramp and a staircase both come from outside, however many files there are of each") {
-  const Model model = model_of({});
+  const Model model = model_of(closed_loop::Joint());
   const auto commanded = [&](auto&& command) {
     Recording one;
     one.name = "open";
     constexpr Eigen::Index rows = 600;
     one.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, 5.99);
     Eigen::VectorXd drive(rows), rate(rows);
-    for (Eigen::Index i = 0; i < rows; ++i) drive[i] = command(i), rate[i] = 40.0 * std::sin(0.02 * i);
+    for (int i = 0; i < rows; ++i) drive[i] = command(i), rate[i] = 40.0 * std::sin(0.02 * i);
     one.set("drive_A", drive);
     one.set("rate_dps", rate);
     return prepare(model, one);
   };
-  const Inputs ramp = commanded([](Eigen::Index i) { return 0.003 * static_cast<double>(i); }),
-               stairs = commanded([](Eigen::Index i) { return 0.2 * static_cast<double>(i / 60 % 7); }),
-               rough = commanded([](Eigen::Index i) { return 0.2 * std::sin(1.7 * i * i); });
+  const Inputs ramp = commanded([](int i) { return 0.003 * i; }),
+               stairs = commanded([](int i) { return 0.2 * (i / 60 % 7); }),
+               rough = commanded([](int i) { return 0.2 * std::sin(1.7 * i * i); });
   CHECK(loop_of(model, {ramp, ramp, stairs}) == LoopKind::open);
   CHECK(loop_of(model, {ramp, stairs, stairs}) == LoopKind::open);
   CHECK(loop_of(model, {rough, stairs, rough}) == LoopKind::closed_found);
