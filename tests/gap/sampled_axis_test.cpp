@@ -8,6 +8,7 @@
 
 #include <thermopower/gap/diagnose.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -70,7 +71,9 @@ TEST_CASE("a loop of which each fifth command is logged makes no gap, whatever i
       CAPTURE(train, held_out);
       const Diagnosis found = answer(train, held_out, 0.0);
       INFO(found.reason);
-      CHECK((found.cause.empty() || test::holds(found)));
+      // Inertia and damping are larger than configured, and may be named for that.
+      CHECK(std::all_of(found.cause.begin(), found.cause.end(),
+                        [](const Cause& one) { return one.effect.rfind("calibration.", 0) == 0; }));
       // Some hundred switches, each at any instant between two rows, leave open by a quarter of a millisecond when a command is in
       // force: a smooth one that was held out shows that.
       if (train == Command::switched && held_out == Command::smooth) continue;

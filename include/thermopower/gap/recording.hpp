@@ -114,8 +114,8 @@ struct Recording {
       const Eigen::Index last = run.end < end ? run.end : end;
       if (first >= last) continue;
       const bool is_cut = run.begin < first;
-      part.runs.push_back(
-          {first - begin, last - begin, run.label, run.goes_on || is_cut, charge.until(run, first)});
+      part.runs.push_back({first - begin, last - begin, run.label, run.goes_on || is_cut,
+                           charge.until(run, first), run.was_driven && !is_cut});
     }
     for (const Column& one : columns)
       part.columns.push_back({one.name, one.values.segment(begin, end - begin)});

@@ -31,6 +31,8 @@ enum class Rule {
   clock,                 ///< stamps that jitter around a clock are set to its ticks
   pauses,                ///< runs are cut where time passed unrecorded
   resets,                ///< runs are cut where an axis was put elsewhere
+  under_way,             ///< the first second of a run that begins in motion is not judged
+  driven_before,         ///< the command before a run is told by the first rows of its motion
   dead_columns,          ///< outputs that stand still while they are driven are left out
   units,                 ///< units, signs and exchanged columns are asked for
   detached_sensors,      ///< sensors that show nothing of what they measure are refused
@@ -41,6 +43,7 @@ enum class Rule {
   current_noise,         ///< the square of a current sensor's noise is taken off the heat
   heat_between_rows,     ///< power that was switched between the rows is averaged
   parsimony,             ///< parameters of an effect cost
+  twins,                 ///< what another explanation says with less is not named
   evidence_bound,        ///< odds are at most those of the difference in standard errors
   constants_first        ///< an effect beside constants that explain everything is not named
 };
@@ -57,6 +60,8 @@ inline constexpr const char* rule_names[] = {"outlier_rejection",
                                              "clock",
                                              "pauses",
                                              "resets",
+                                             "under_way",
+                                             "driven_before",
                                              "dead_columns",
                                              "units",
                                              "detached_sensors",
@@ -67,6 +72,7 @@ inline constexpr const char* rule_names[] = {"outlier_rejection",
                                              "current_noise",
                                              "heat_between_rows",
                                              "parsimony",
+                                             "twins",
                                              "evidence_bound",
                                              "constants_first"};
 

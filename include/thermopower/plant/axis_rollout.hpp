@@ -73,7 +73,10 @@ public:
   /// The drive at a row, from a command of the run (of none where that lies before it).
   /// @param commanded  row of the command
   AxisDrive<Scalar> drive(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
-    const double value = commanded >= run.begin ? commanded_value(commanded) : 0.0;
+    const Eigen::Index first = run.begin;
+    const double value = commanded >= first ? commanded_value(commanded)
+                         : run.was_driven   ? commanded_value(first)
+                                            : 0.0;
     if (instance_.voltage_driven) return drive(Scalar(value / instance_.motor_ohm), row, t_s);
     return drive(constant<Scalar>(value), row, t_s);
   }

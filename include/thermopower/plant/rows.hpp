@@ -38,6 +38,8 @@ struct RunSpan {
   bool goes_on = false;
   /// Charge that the supply had given before its first row, as far as that is known; see RecordedCharge.
   double drawn_Ah = 0.0;
+  /// Whether the command of its first row was in force before that, too; else an axis was idle there.
+  bool was_driven = false;
 
   /// Number of rows.
   Eigen::Index size() const { return end - begin; }

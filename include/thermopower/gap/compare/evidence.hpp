@@ -290,9 +290,18 @@ inline bool is_small(const Candidate& candidate, std::size_t small, std::size_t 
 
 /// Another name for an effect, by where its parameters ended.
 struct SpecialCase {
-  std::string cause;      ///< id; empty: the effect itself
+  std::string cause;           ///< id; empty: the effect itself
+  bool but_for_a_bit = false;  ///< what else it has is too small to be what it fits better by
   bool the_same = false;  ///< there is nothing else: what it fits better by is where its fit happened to end
 };
+
+/// Whether no signal's error is larger than another one's by more than what every model is wrong by.
+inline bool is_nearly(const SignalSums& sums, const SignalSums& others) {
+  constexpr double most = 1.0 + decision.alike_far_from_noise;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (sums.samples[i] > 0.0 && sums.mean(i) > most * most * others.mean(i)) return false;
+  return true;
+}
 
 /// The other name of an effect of a candidate, by where its parameters ended.
 /// @param at  place of its first parameter among the candidate's coordinates
@@ -302,10 +311,11 @@ inline SpecialCase special_case(const Candidate& candidate, const EffectInfo& in
   const auto differ_by_no_more_than = [&](double share) {
     return equal && are_equal(candidate, place(equal->one), place(equal->other), share);
   };
-  if (differ_by_no_more_than(decision.the_same)) return {equal->cause, true};
-  if (differ_by_no_more_than(decision.equal)) return {equal->cause, false};
+  if (differ_by_no_more_than(decision.the_same)) return {equal->cause, true, true};
+  if (differ_by_no_more_than(decision.equal)) return {equal->cause, false, false};
   const auto& small = info.where_small;
-  if (small && is_small(candidate, place(small->small), place(small->beside))) return {small->cause, false};
+  if (small && is_small(candidate, place(small->small), place(small->beside)))
+    return {small->cause, true, false};
   return {};
 }
 
@@ -319,6 +329,34 @@ inline bool has_special_case(const Candidate& candidate, const Model& model) {
   return false;
 }
 
+/// Whether a candidate ended where it is another one (EffectInfo::where_equal, EffectInfo::where_small) that scores like
+/// it. Both say the same, and the other needs fewer parameters. If two parameters are equal, it is enough that the other
+/// one fits the training data as well. On held-out data the two then differ only in what both have. A cause with a small
+/// extra part bends to the rest of the others. It is then enough that these leave what the noise allows.
+inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, const Model& model) {
+  std::size_t first = model.calibrated().size();
+  for (const CatalogueEntry* entry : candidate.explanation.effects) {
+    const std::size_t at = first;
+    first += entry->info.parameters.size();
+    const SpecialCase in_fact = special_case(candidate, entry->info, at);
+    if (in_fact.cause.empty()) continue;
+    // Constants are free in every explanation: only its effects tell it from another one.
+    std::vector<std::string> ids, simpler_ids;
+    for (const CatalogueEntry* one : candidate.explanation.effects)
+      if (one != entry) ids.push_back(one->info.id);
+    if (!plant::is_calibration(in_fact.cause)) ids.push_back(in_fact.cause);
+    for (const CatalogueEntry* one : simpler.explanation.effects) simpler_ids.push_back(one->info.id);
+    std::sort(ids.begin(), ids.end());
+    std::sort(simpler_ids.begin(), simpler_ids.end());
+    if (ids == simpler_ids && in_the_running(simpler) &&
+        (scores_alike(simpler, candidate) || (in_fact.but_for_a_bit && is_at_the_noise(simpler)) ||
+         (in_fact.the_same &&
+          (is_nearly(simpler.held_out, candidate.held_out) || is_nearly(simpler.train, candidate.train)))))
+      return true;
+  }
+  return false;
+}
+
 /// Marks effects beside moved constants that alone bring everything to the noise. The constants are the answer, and such an
 /// effect only fits noise.
 inline void mark_idle(std::vector<Candidate>& candidates) {
@@ -327,6 +365,36 @@ inline void mark_idle(std::vector<Candidate>& candidates) {
     if (constants.explanation.effects.empty() && !constants.explanation.released.empty() &&
         is_at_the_noise(constants) && holds(Rule::constants_first))
       for (Candidate& one : candidates) one.idle = one.idle || does_nothing_more(one, constants);
+}
+
+/// Whether a set has a cause among others that is another one to the last: its two parameters are the same.
+/// @param alone  an explanation by that one cause
+inline bool has_the_same(const Candidate& set, const Explanation& alone, const Model& model) {
+  std::size_t at = model.calibrated().size();
+  for (const CatalogueEntry* entry : set.explanation.effects) {
+    if (entry == alone.effects.front() && special_case(set, entry->info, at).the_same) return true;
+    at += entry->info.parameters.size();
+  }
+  return false;
+}
+
+/// Marks candidates that another one says with less (is_in_fact()): all at once, so that a simpler one that is itself marked
+/// still counts. A cause that is so alone and has nothing of its own beside others either is none of a set.
+inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
+  std::vector<Candidate*> twins;
+  for (Candidate& one : candidates)
+    if (std::any_of(candidates.begin(), candidates.end(),
+                    [&](const Candidate& simpler) { return is_in_fact(simpler, one, model); }))
+      twins.push_back(&one);
+  if (twins.empty() || !holds(Rule::twins)) return;
+  std::vector<const Explanation*> alone;
+  for (Candidate* one : twins) {
+    one->idle = true;
+    if (one->explanation.effects.size() == 1) alone.push_back(&one->explanation);
+  }
+  for (Candidate& one : candidates)
+    for (const Explanation* twin : alone)
+      one.idle = one.idle || (one.explanation.effects.size() > 1 && has_the_same(one, *twin, model));
 }
 
 /// Deviance of residuals, all signals together.
@@ -378,6 +446,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     one.makes_worse = !one.explanation.effects.empty() && one.held_out.any() &&
                       one.held_out_deviance > candidates.front().held_out_deviance;
   }
+  mark_twins(candidates, model);
   for (const Candidate& one : candidates)
     if (in_the_running(one) && (best == nullptr || one.deviance < best->deviance)) best = &one;
   const auto merged = [&](const SignalSums& sums, const std::array<double, signal_count>& correlation) {

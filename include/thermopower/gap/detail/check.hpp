@@ -11,6 +11,7 @@
 #include <thermopower/gap/observe/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/observe/target_between_rows.hpp>
+#include <thermopower/gap/observe/under_way.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/rule.hpp>
 #include <thermopower/gap/units/choose_units.hpp>
@@ -126,6 +127,22 @@ inline MotionRegression commanded_motion(const Model& model, const CheckedRecord
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) motion.add(one.inputs(), command_of(model, one));
   return motion;
+}
+
+/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show which, by
+/// what the motion makes of earlier commands in the training recordings. Comes before what is said of the command between the rows.
+inline void read_what_drove_before(const Model& model, CheckedRecordings& checked) {
+  if (!model.has_axis()) return;
+  const MotionRegression motion = commanded_motion(model, checked);
+  const DrivenBefore before(motion);
+  for (PreparedRecording* const one : checked.all()) {
+    if (!is_commanded(*one)) continue;
+    const std::vector<RunSpan>& runs = one->inputs().runs;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      if (const auto was = before.was(one->inputs(), command_of(model, *one), runs[i]);
+          was && !runs[i].goes_on && holds(Rule::driven_before))
+        one->set_driven_before(i, *was);
+  }
 }
 
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
@@ -255,6 +272,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   leave_out_what_is_dead(model, result, options.as_recorded, findings);
   if (!options.as_recorded) {
     mend_what_lags(model, result, findings);
+    read_what_drove_before(model, result);
     read_between_rows(model, result, options.horizon_s, findings);
     read_targets_between_rows(model, result, catalogue, findings);
     read_current_noise(model, result, findings);

@@ -109,8 +109,8 @@ private:
     for (const RunSpan& run : full_.runs) {
       const auto begin = static_cast<Eigen::Index>(blocks.size());
       for (Eigen::Index row = run.begin; row + rows <= run.end; row += rows) blocks.push_back(row);
-      thin.runs.push_back(
-          {begin, static_cast<Eigen::Index>(blocks.size()), run.label, run.goes_on, run.drawn_Ah});
+      thin.runs.push_back({begin, static_cast<Eigen::Index>(blocks.size()), run.label, run.goes_on,
+                           run.drawn_Ah, run.was_driven});
     }
     const auto count = static_cast<Eigen::Index>(blocks.size());
     thin.t_s.resize(count);

@@ -10,6 +10,7 @@
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
 #include <thermopower/gap/data/slow_sensors.hpp>
+#include <thermopower/gap/observe/under_way.hpp>
 #include <thermopower/gap/rule.hpp>
 #include <thermopower/plant/variable_words.hpp>
 #include <thermopower/plant/samples.hpp>
@@ -92,6 +93,11 @@ public:
     renew_inputs(model);
     for (plant::NotJudged& note : inputs_.not_judged)
       if (note.what == column) note.sentence = sentence;
+  }
+  /// Says whether the first command of a run was in force before that already. @param run  place among the runs
+  void set_driven_before(std::size_t run, bool was) {
+    believed_.runs = believed_.spans();
+    believed_.runs[run].was_driven = inputs_.runs[run].was_driven = was;
   }
   /// Rows that were given.
   Eigen::Index recorded_rows() const { return recorded_rows_; }
@@ -181,6 +187,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
                        !recorded.has("drive_A") && !recorded.has("heat_W") && model.has_thermal();
   mask_outputs(recorded, list);
   fill_inputs(model, recorded, list);
+  if (moves_) mark_under_way(believed_);
   interval_s_ = plant::median_interval_s(believed_.t_s, believed_.spans(), 0.0);
   findings_ = list.take();
   if (as_recorded) {
