@@ -337,6 +337,14 @@ private:
         result_.numbers.probability = together;
       }
     }
+    // Where a rest stays, those count that do for the gap what a cause would have to; more than two stand for something else.
+    const bool leave_a_rest = decided.reason == Reason::constants_close_most;
+    const auto fewest = [&] {
+      if (beyond.size() == 1) return beyond;
+      const double as_well = leave_a_rest ? 1.0 / verdict_limits.of_constants : 1.05;
+      return fewest_constants(attempt.problem, constants, as_well).explanation.released;
+    };
+    if (leave_a_rest && fewest().size() > 2) decided = {Verdict::unexplained, Reason::constants_leave_a_rest};
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
@@ -349,11 +357,7 @@ private:
     note_recalibration(result_);
     if (!named || by_constants) keep_constants_alone(result_, model_);
     if (named && by_constants) {
-      // Where a rest stays, those count that do for the gap what a cause would have to.
-      const double as_well =
-          decided.reason == Reason::constants_close_most ? 1.0 / verdict_limits.of_constants : 1.05;
-      if (beyond.size() == 1) constants.explanation.released = beyond;
-      else constants.explanation = fewest_constants(attempt.problem, constants, as_well).explanation;
+      constants.explanation.released = fewest();
       name_causes(result_, candidates, {choice.chosen, probability, 0.0, {}}, constants, model_, weight);
     } else if (named) {
       result_.augmented = fitted;
