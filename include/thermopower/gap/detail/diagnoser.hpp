@@ -337,14 +337,21 @@ private:
         result_.numbers.probability = together;
       }
     }
-    // Where a rest stays, those count that do for the gap what a cause would have to; more than two stand for something else.
+    // Where a rest stays, those count that do for the gap what a cause would have to. More than two stand for something else, and so
+    // does one on its bound.
     const bool leave_a_rest = decided.reason == Reason::constants_close_most;
     const auto fewest = [&] {
       if (beyond.size() == 1) return beyond;
       const double as_well = leave_a_rest ? 1.0 / verdict_limits.of_constants : 1.05;
       return fewest_constants(attempt.problem, constants, as_well).explanation.released;
     };
-    if (leave_a_rest && fewest().size() > 2) decided = {Verdict::unexplained, Reason::constants_leave_a_rest};
+    if (leave_a_rest) {
+      const std::vector<int> named = fewest();
+      const bool ends_on_a_bound = std::any_of(
+          named.begin(), named.end(), [&](int i) { return refitted[static_cast<std::size_t>(i)].on_bound; });
+      if (named.size() > 2 || ends_on_a_bound)
+        decided = {Verdict::unexplained, Reason::constants_leave_a_rest};
+    }
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
