@@ -55,8 +55,7 @@ TEST_CASE("beside a rest, a cause that spares the constants need not beat consta
   CHECK(decide(small, false, 3, true).verdict == Verdict::unexplained);     // neither closes half
 }
 
-TEST_CASE(
-    "constants that close most of a gap are a part of the answer, whether or not they were known so badly") {
+TEST_CASE("constants that close most of a gap are a part of the answer, however well they were known") {
   for (const int beyond_known : {0, 1, 2}) {
     CHECK(verdict_of({row(46.0, 8.0, 8.0)}, 1.0, true, beyond_known) == Verdict::partial);
     CHECK(verdict_of({row(46.0, 30.0, 30.0)}, 1.0, true, beyond_known) == Verdict::unexplained);

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 // Joints in closed loops: motion follows its target whatever the joint lacks, and the effort tells it.
-// The large draw of the same kind is the part `closed_loops` of tests/gap_benchmark; gap_inverse_table scores it.
+// The large draw of the same kind is the part `closed_loops` of tests/gap_benchmark.
 
 #include "../../catch.hpp"
 #include "closed_loop.hpp"

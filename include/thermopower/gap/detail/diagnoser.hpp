@@ -310,61 +310,56 @@ private:
     const bool is_shared = only_constants ? share_a_factor(refitted) : is_another_supply(chosen, of_chosen);
     if (result_.numbers.common_factor == CommonFactor::none && is_shared)
       result_.numbers.common_factor = CommonFactor::of_no_constant;
-    Decision decided = ran_away(result_.gap)
-                           ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
-                           : decide(result_.numbers, only_constants,
-                                    static_cast<int>(beyond_known(refitted).size()), spares_constants);
+    const std::vector<int> beyond = beyond_known(refitted);
+    Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
+                                             : decide(result_.numbers, only_constants,
+                                                      static_cast<int>(beyond.size()), spares_constants);
     const auto names_a_cause = [](Verdict verdict) {
       return verdict == Verdict::explained || verdict == Verdict::ambiguous || verdict == Verdict::partial;
     };
     if (names_a_cause(decided.verdict) && !only_constants && !has_readings_enough(chosen))
       decided = {Verdict::unexplained, Reason::no_explanation_likely};
-    const std::vector<int> beyond = beyond_known(refitted);
     double probability = only_constants ? choice.probability : 1.0 - choice.probability;
     // An explanation that does not beat refitted constants leaves the answer to these; a curve does where both do as well.
     const bool is_beaten = decided.reason == Reason::closes_too_little ||
                            (decided.reason == Reason::cause_or_constants && chosen.explanation.is_a_curve());
     if (!only_constants && is_beaten) {
       keep_constants_alone(result_, model_);
-      const double together = std::min(1.0, choice.probability + probability_of_constants(candidates));
-      const Decision of_constants =
-          decide(numbers_of(result_.gap, together), true, static_cast<int>(beyond.size()), spares_constants);
+      const DecisionNumbers numbers =
+          numbers_of(result_.gap, std::min(1.0, choice.probability + probability_of_constants(candidates)));
+      const Decision of_constants = decide(numbers, true, static_cast<int>(beyond.size()), spares_constants);
       if (names_a_cause(of_constants.verdict)) {
         decided = of_constants;
         only_constants = true;
-        probability = together;
-        result_.numbers.share = share_left(result_.gap);
-        result_.numbers.probability = together;
+        probability = result_.numbers.probability = numbers.probability;
+        result_.numbers.share = numbers.share;
       }
     }
-    // Where a rest stays, those count that do for the gap what a cause would have to. More than two stand for something else, and so
-    // does one on its bound.
     const bool leave_a_rest = decided.reason == Reason::constants_close_most;
-    const auto fewest = [&] {
-      if (beyond.size() == 1) return beyond;
+    const bool by_constants = leave_a_rest || decided.reason == Reason::constants_within_known ||
+                              decided.reason == Reason::constants_moved ||
+                              (decided.reason == Reason::common_factor && only_constants);
+    if (names_a_cause(decided.verdict) && by_constants) {
+      // Where a rest stays, those count that do for the gap what a cause would have to. More than two stand for something else, and
+      // so does one on its bound.
       const double as_well = leave_a_rest ? 1.0 / verdict_limits.of_constants : 1.05;
-      return fewest_constants(attempt.problem, constants, as_well).explanation.released;
-    };
-    if (leave_a_rest) {
-      const std::vector<int> named = fewest();
+      constants.explanation.released =
+          beyond.size() == 1 ? beyond
+                             : fewest_constants(attempt.problem, constants, as_well).explanation.released;
+      const std::vector<int>& moved = constants.explanation.released;
       const bool ends_on_a_bound = std::any_of(
-          named.begin(), named.end(), [&](int i) { return refitted[static_cast<std::size_t>(i)].on_bound; });
-      if (named.size() > 2 || ends_on_a_bound)
+          moved.begin(), moved.end(), [&](int i) { return refitted[static_cast<std::size_t>(i)].on_bound; });
+      if (leave_a_rest && (moved.size() > 2 || ends_on_a_bound))
         decided = {Verdict::unexplained, Reason::constants_leave_a_rest};
     }
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
-    const bool by_constants = decided.reason == Reason::constants_within_known ||
-                              decided.reason == Reason::constants_moved ||
-                              decided.reason == Reason::constants_close_most ||
-                              (decided.reason == Reason::common_factor && only_constants);
     const bool named = names_a_cause(decided.verdict);
     result_.constants = named && !by_constants ? of_chosen : refitted;
     note_recalibration(result_);
     if (!named || by_constants) keep_constants_alone(result_, model_);
     if (named && by_constants) {
-      constants.explanation.released = fewest();
       name_causes(result_, candidates, {choice.chosen, probability, 0.0, {}}, constants, model_, weight);
     } else if (named) {
       result_.augmented = fitted;
